@@ -1,0 +1,119 @@
+/* The renderer's front: pictures from scenes. No sockets, no protocol, no hidden threads.
+ *
+ * A renderer and everything made from it belong to one thread, the one that created it (its GL context is current there).
+ * Scenes are frozen and may be shared. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+#include "shadow/shadow.h"
+
+struct job_pool;
+struct renderer;
+struct render_scene;
+
+enum camera_pass { CAMERA_PASS_AUTO, CAMERA_PASS_RASTER, CAMERA_PASS_TRACED };
+enum show { SHOW_SHADED, SHOW_VISIBILITY, SHOW_DEPTH, SHOW_NORMAL, SHOW_ID };
+enum tonemap { TONEMAP_ACES, TONEMAP_NONE };
+enum pixel_format {
+    PIXELS_RGBA8,   /* sRGB, tone mapped, alpha 255 */
+    PIXELS_RGBA32F, /* linear, before tone mapping, alpha 1 */
+};
+
+#define RENDERER_LIGHTS_MAX 16
+#define RENDERER_SIZE_MAX 16384   /* pixels a side */
+#define RENDERER_IN_FLIGHT 3      /* frames submitted and not yet collected */
+
+struct renderer_options {
+    const char *device;      /* index in renderer_list_devices(), DRM node path, "software", or NULL: first that works */
+    const char *shader_dir;  /* read shaders from here and reload them when they change; NULL: the built-in ones */
+    const char *cache_dir;   /* program binaries; NULL: $XDG_CACHE_HOME/gnomon or ~/.cache/gnomon; "": no cache */
+    unsigned threads;        /* >= 1; bounds the GL software rasterizer (LP_NUM_THREADS, set before the first context) and the tracer */
+    bool gl_debug;           /* GL debug messages to the log */
+};
+
+/* Errors: ERROR_NO_DEVICE naming each attempt and why it failed. `pool` must outlive the renderer. */
+struct renderer *renderer_create(const struct renderer_options *options, struct job_pool *pool, struct error *err);
+void renderer_destroy(struct renderer *r); /* accepts NULL; every render_scene must be gone */
+
+struct device_info {
+    int index;            /* what --device takes */
+    char platform[16];    /* "device", "surfaceless", "gbm" */
+    char node[64];        /* DRM node, "" if none */
+    char vendor[64], renderer[128], version[128]; /* as GL says; "" when no context could be made */
+    char why_not[160];    /* "" when usable */
+    int cuda;             /* CUDA ordinal, -1 if none */
+    bool software;
+};
+
+/* Tries every device; returns how many were written to `out` (at most `max`). May be called without a renderer. */
+size_t renderer_list_devices(struct device_info *out, size_t max);
+/* The device in use. */
+const struct device_info *renderer_device(const struct renderer *r);
+
+/* Uploads `scene`, which must outlive the result. Destroy with render_scene_destroy() (accepts NULL). */
+struct render_scene *render_scene_create(struct renderer *r, const struct scene *scene, struct error *err);
+void render_scene_destroy(struct render_scene *s);
+
+struct render_settings {
+    uint32_t width, height;        /* pixels of the result, 1..RENDERER_SIZE_MAX */
+    struct camera camera;          /* scene space */
+    struct light lights[RENDERER_LIGHTS_MAX]; /* scene space */
+    size_t light_count;
+    const struct shadow_system *system;
+    struct shadow_params params;
+    enum show show;
+    bool exposure_auto;            /* from the lights and the scene's size alone */
+    double exposure_ev;            /* picture = radiance * 2^ev, when not auto */
+    double ambient;                /* fraction of white ambient radiance, >= 0 */
+    enum tonemap tonemap;
+    unsigned aa;                   /* samples a pixel: 1, 4 or 16 */
+    enum camera_pass camera_pass;
+    enum pixel_format format;
+    bool finish_each_pass;         /* waits after each pass so that pass times are true on any device */
+};
+
+struct render_settings render_settings_default(const struct scene *scene);
+
+enum render_pass { PASS_CAMERA, PASS_RECEIVERS, PASS_PREPARE, PASS_RESOLVE, PASS_LIGHTING, PASS_READBACK, PASS_COUNT };
+extern const char *const render_pass_names[PASS_COUNT]; /* "camera", ... */
+
+struct frame_info {
+    uint64_t token;                /* as given to renderer_submit() */
+    uint32_t width, height;
+    enum pixel_format format;
+    double pass_ms[PASS_COUNT];    /* wall times with finish_each_pass, else GPU timer queries (0 where those are not in yet) */
+    double frame_ms;               /* from renderer_submit() to the pixels in CPU memory */
+    bool prepared;                 /* some light's shadow structure was rebuilt */
+    bool traced_camera;            /* which producer made the ids */
+    size_t shadow_bytes;           /* over all lights */
+    unsigned map_count;            /* maps of the first light, 0 if none */
+    uint32_t map_size;
+    double map_fov_deg[SHADOW_MAPS_MAX];
+    size_t map_count_total;        /* over all lights */
+};
+
+/* Starts a frame; does not wait for the GPU. At most RENDERER_IN_FLIGHT may be uncollected (ERROR_TRY_AGAIN past that).
+ * `token` comes back with the frame. */
+bool renderer_submit(struct renderer *r, struct render_scene *s, const struct render_settings *settings, uint64_t token,
+                     struct error *err);
+
+/* The oldest frame in flight: copies its pixels (rows top to bottom, tightly packed) to `pixels`. With wait = false returns
+ * false at once when the GPU is not done. False too when nothing is in flight, or (err set) the device was lost. */
+bool renderer_collect(struct renderer *r, bool wait, void *pixels, size_t size, struct frame_info *info, struct error *err);
+
+/* Size in pixels of the oldest frame in flight; false when none. */
+bool renderer_oldest(const struct renderer *r, uint32_t *width, uint32_t *height, enum pixel_format *format);
+
+/* Of the last frame submitted (aa = 1), waiting for it: visibility of `light`, one float a pixel, and the drawn-triangle ids
+ * (SCENE_NONE: background) that the camera pass wrote. `out`: width * height. */
+bool renderer_read_visibility(struct renderer *r, unsigned light, float *out);
+bool renderer_read_ids(struct renderer *r, uint32_t *out);
+
+/* Light `index` turned by `degrees` about the vertical axis through the scene's centre: --moving. */
+struct light light_turned(const struct scene *scene, const struct light *light, double degrees);

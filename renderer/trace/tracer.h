@@ -1,0 +1,37 @@
+/* The scene as plain triangles in an Embree tree: fp32, robust, packets, both producers' fast path on a machine without a GPU.
+ * Scene space rounded to fp32. Thread-safe once created. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "scene/scene.h"
+#include "scene/view.h"
+
+struct error;
+struct job_pool;
+struct tracer;
+
+/* `scene` must outlive it. Threads bounds the tree build. ERROR_TRY_AGAIN when memory is out. */
+struct tracer *tracer_create(const struct scene *scene, unsigned threads, struct error *err);
+void tracer_destroy(struct tracer *t);
+size_t tracer_bytes(const struct tracer *t);
+
+/* The camera pass, traced: for every pixel the drawn-triangle id visible at its centre (SCENE_NONE: none), and its receiver: xyz = the
+ * triangle's unit geometric normal turned towards the eye, w = depth along view.forward (0 where there is none). Obeys double_sided,
+ * holes (material_alpha), view.near and view.far. ids: width * height; receivers: width * height * 4, may be NULL. */
+void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, float *receivers);
+
+/* A light's depth map, traced: the nearest depth along view.forward at each texel centre over `casters` only (ascending instance
+ * indices; NULL: all), INFINITY where there is none; every triangle counts, whichever side it shows; holes are holes.
+ * ids may be NULL. */
+void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count, struct job_pool *pool,
+                  float *depths, uint32_t *ids);
+
+/* The speed baseline. Ids as tracer_camera() wrote them; visibility: 1 lit, 0 shadowed or no receiver. */
+void tracer_shadow_point(const struct tracer *t, const struct view *view, const struct light *light, const uint32_t *ids,
+                         struct job_pool *pool, float *visibility);
+/* 32 primary and 32 shadow rays a pixel (view_samples32). receivers and lit: one mask a pixel; either may be NULL. */
+void tracer_shadow_samples32(const struct tracer *t, const struct view *view, const struct light *light, struct job_pool *pool,
+                             uint32_t *receivers, uint32_t *lit);
