@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
+#include "gl/device.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 #include "shadow/shadow.h"
@@ -41,17 +42,8 @@ struct renderer_options {
 struct renderer *renderer_create(const struct renderer_options *options, struct job_pool *pool, struct error *err);
 void renderer_destroy(struct renderer *r); /* accepts NULL; every render_scene must be gone */
 
-struct device_info {
-    int index;            /* what --device takes */
-    char platform[16];    /* "device", "surfaceless", "gbm" */
-    char node[64];        /* DRM node, "" if none */
-    char vendor[64], renderer[128], version[128]; /* as GL says; "" when no context could be made */
-    char why_not[160];    /* "" when usable */
-    int cuda;             /* CUDA ordinal, -1 if none */
-    bool software;
-};
-
-/* Tries every device; returns how many were written to `out` (at most `max`). May be called without a renderer. */
+/* Every device that EGL offers, tried (gl/device.h); returns how many were written to `out` (at most `max`). Needs no renderer. */
+#define device_info gl_device_info
 size_t renderer_list_devices(struct device_info *out, size_t max);
 /* The device in use. */
 const struct device_info *renderer_device(const struct renderer *r);
