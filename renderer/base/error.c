@@ -52,9 +52,10 @@ bool error_prefix(struct error *err, const char *format, ...)
     int n = vsnprintf(text, sizeof text, format, args);
     va_end(args);
     size_t used = n < 0 ? 0 : (size_t)n < sizeof text ? (size_t)n : sizeof text - 1;
-    snprintf(text + used, sizeof text - used, ": %s", err->message);
+    bool cut = (size_t)snprintf(text + used, sizeof text - used, ": %s", err->message) >= sizeof text - used;
     memcpy(err->message, text, sizeof text);
     clean(err->message);
-    end_at_character(err->message, sizeof err->message);
+    if (cut)
+        end_at_character(err->message, sizeof err->message);
     return false;
 }
