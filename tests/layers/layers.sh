@@ -1,0 +1,12 @@
+#!/bin/sh
+# layers.sh TREE: checks who includes whom in TREE/renderer and TREE/server. Exit code 1 and one line for each fault.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$1"
+sources=$(find renderer server -name '*.[ch]' -o -name '*.cc' -o -name '*.cpp' -o -name '*.hpp' 2>/dev/null | LC_ALL=C sort)
+headers=$(find renderer server shaders -name '*.h' 2>/dev/null | LC_ALL=C sort)
+# none, auto and exact also mean other things (a tone map, a camera pass, a tracer).
+names=$(sed -n 's/^ *[A-Z_]*(\([a-z0-9_]*\).*/\1/p' renderer/shadow/algorithms.def 2>/dev/null | grep -vxE 'none|auto|exact' || true)
+found=$(LC_ALL=C awk -v allowed="$here/allowed.txt" -v headers="$(echo $headers)" -v algorithms="$(echo ${names:-sm pcf})" \
+    -f "$here/layers.awk" $sources)
+[ -z "$found" ] || { printf '%s\n' "$found"; exit 1; }

@@ -1,0 +1,4 @@
+#include "base/error.h"
+#include <pthread.h>
+
+#include "scene/scene.h"

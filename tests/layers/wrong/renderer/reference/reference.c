@@ -1,0 +1,3 @@
+#include <embree3/rtcore.h>
+#include <gmp.h>
+#include <OpenImageIO/imageio.h>

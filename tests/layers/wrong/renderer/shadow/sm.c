@@ -1,0 +1,3 @@
+#include "renderer.h"
+#include "shadow/shadow.h"
+static const char *name = "sm";

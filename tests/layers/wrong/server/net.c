@@ -1,0 +1,5 @@
+#include <libwebsockets.h>
+#include "renderer.h"
+#include "session.h"
+#include "proto/tables.h"
+#include "gl/texture.h"

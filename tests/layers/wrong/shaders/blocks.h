@@ -1,0 +1,1 @@
+/* shared with GLSL */
