@@ -1,0 +1,134 @@
+/* The camera pass and light maps, traced. */
+#include <math.h>
+
+#include "base/job_pool.h"
+#include "trace/rays.h"
+
+struct camera_job {
+    const struct tracer *tracer;
+    const struct view *view;
+    struct ray_frame frame;
+    uint32_t *ids;
+    float *receivers;
+};
+
+/* Unit normals turned towards the eye. Scaled by their largest component first: a small triangle's square underflows. */
+static void unit_normals(const struct RTCHit16 *hit, const float facing[LANES], float out[restrict 3][LANES])
+{
+    for (int i = 0; i < LANES; i++) {
+        float x = hit->Ng_x[i], y = hit->Ng_y[i], z = hit->Ng_z[i];
+        float most = fmaxf(fmaxf(fabsf(x), fabsf(y)), fabsf(z));
+        float s = 1 / (most > 0 ? most : 1);
+        x *= s, y *= s, z *= s;
+        s = 1 / sqrtf(x * x + y * y + z * z);
+        s = facing[i] > 0 ? -s : s;
+        out[0][i] = x * s;
+        out[1][i] = y * s;
+        out[2][i] = z * s;
+    }
+}
+
+static void write_receivers(const struct camera_job *job, const int valid[LANES], const struct RTCRayHit16 *packet,
+                            const float facing[LANES], uint32_t x, uint32_t y)
+{
+    float normal[3][LANES];
+    unit_normals(&packet->hit, facing, normal);
+    for (uint32_t i = 0; i < LANES; i++) {
+        if (!valid[i])
+            continue;
+        float *out = job->receivers + ((size_t)(y + i / PACKET) * job->view->width + x + i % PACKET) * 4;
+        bool hit = packet->hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        out[0] = hit ? normal[0][i] : 0;
+        out[1] = hit ? normal[1][i] : 0;
+        out[2] = hit ? normal[2][i] : 0;
+        out[3] = hit ? (float)job->frame.start + packet->ray.tfar[i] : 0;
+    }
+}
+
+static void write_ids(const struct camera_job *job, const int valid[LANES], const struct RTCHit16 *hit, uint32_t x, uint32_t y)
+{
+    uint32_t ids[LANES];
+    hit_ids(job->tracer, hit, ids);
+    for (uint32_t i = 0; i < LANES; i++)
+        if (valid[i])
+            job->ids[(size_t)(y + i / PACKET) * job->view->width + x + i % PACKET] = ids[i];
+}
+
+static void camera_tile(void *context, size_t index, unsigned worker)
+{
+    (void)worker;
+    const struct camera_job *job = context;
+    const struct tile tile = tile_at(job->view, index);
+    struct RTCRayHit16 packet;
+    int valid[LANES] __attribute__((aligned(64)));
+    float facing[LANES];
+    ray_frame_start(&job->frame, job->view->orthographic, &packet);
+    for (uint32_t y = tile.y; y < tile.y + tile.height; y += PACKET)
+        for (uint32_t x = tile.x; x < tile.x + tile.width; x += PACKET) {
+            ray_frame_packet(&job->frame, job->view->orthographic, x + 0.5, y + 0.5, &packet);
+            tile_lanes(&tile, x, y, valid);
+            trace_visible(job->tracer, valid, job->frame.tfar, &packet, facing);
+            write_ids(job, valid, &packet.hit, x, y);
+            if (job->receivers)
+                write_receivers(job, valid, &packet, facing, x, y);
+        }
+}
+
+void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, float *receivers)
+{
+    struct camera_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .ids = ids, .receivers = receivers};
+    job_pool_for(pool, tile_count(view), camera_tile, &job);
+}
+
+struct light_job {
+    const struct tracer *tracer;
+    RTCScene tree;
+    const struct view *view;
+    struct ray_frame frame;
+    float *depths;
+    uint32_t *ids;
+};
+
+static void write_depths(const struct light_job *job, const int valid[LANES], const struct RTCRayHit16 *packet, uint32_t x, uint32_t y)
+{
+    uint32_t ids[LANES];
+    hit_ids(job->tracer, &packet->hit, ids);
+    for (uint32_t i = 0; i < LANES; i++) {
+        if (!valid[i])
+            continue;
+        size_t at = (size_t)(y + i / PACKET) * job->view->width + x + i % PACKET;
+        job->depths[at] = ids[i] == SCENE_NONE ? INFINITY : (float)job->frame.start + packet->ray.tfar[i];
+        if (job->ids)
+            job->ids[at] = ids[i];
+    }
+}
+
+static void light_tile(void *context, size_t index, unsigned worker)
+{
+    (void)worker;
+    const struct light_job *job = context;
+    const struct tile tile = tile_at(job->view, index);
+    struct RTCRayHit16 packet;
+    int valid[LANES] __attribute__((aligned(64)));
+    struct RTCIntersectContext query;
+    rtcInitIntersectContext(&query);
+    query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    ray_frame_start(&job->frame, job->view->orthographic, &packet);
+    for (uint32_t y = tile.y; y < tile.y + tile.height; y += PACKET)
+        for (uint32_t x = tile.x; x < tile.x + tile.width; x += PACKET) {
+            ray_frame_packet(&job->frame, job->view->orthographic, x + 0.5, y + 0.5, &packet);
+            tile_lanes(&tile, x, y, valid);
+            rtcIntersect16(valid, job->tree, &query, &packet);
+            write_depths(job, valid, &packet, x, y);
+        }
+}
+
+void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count, struct job_pool *pool,
+                  float *depths, uint32_t *ids)
+{
+    struct light_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .depths = depths, .ids = ids};
+    job.tree = tree_of_casters(t, casters, caster_count);
+    if (!job.tree)
+        job.tree = t->all;
+    job_pool_for(pool, tile_count(view), light_tile, &job);
+}
