@@ -124,7 +124,6 @@ static void refuse_hidden(const struct RTCFilterFunctionNArguments *args)
 {
     const struct tracer *t = ((const struct visible_context *)args->context)->tracer;
     unsigned n = args->N;
-    unsigned n = args->N;
     for (unsigned i = 0; i < n; i++) {
         if (!args->valid[i])
             continue;
