@@ -7,6 +7,8 @@ sources=$(find renderer server -name '*.[ch]' -o -name '*.cc' -o -name '*.cpp' -
 headers=$(find renderer server shaders -name '*.h' 2>/dev/null | LC_ALL=C sort)
 # none, auto and exact also mean other things (a tone map, a camera pass, a tracer).
 names=$(sed -n 's/^ *[A-Z_]*(\([a-z0-9_]*\).*/\1/p' renderer/shadow/algorithms.def 2>/dev/null | grep -vxE 'none|auto|exact' || true)
-found=$(LC_ALL=C awk -v allowed="$here/allowed.txt" -v headers="$(echo $headers)" -v algorithms="$(echo ${names:-sm pcf})" \
+words() { tr '\n' ' '; }
+# shellcheck disable=SC2086
+found=$(LC_ALL=C awk -v allowed="$here/allowed.txt" -v headers="$(echo "$headers" | words)" -v algorithms="$(echo "${names:-sm pcf}" | words)" \
     -f "$here/layers.awk" $sources)
 [ -z "$found" ] || { printf '%s\n' "$found"; exit 1; }
