@@ -17,7 +17,8 @@ function included_folder(name, path,    own) {
     if (("renderer/" name) in header) return folder_of("renderer/" name)
     if (("server/" name) in header) return "server"
     if (("shaders/" name) in header) return "shaders"
-    return name ~ /^proto\// ? "proto" : ""
+    if (("proto/" name) in header || name ~ /^proto\//) return "proto"
+    return ""
 }
 
 function complain(text) {
@@ -75,7 +76,6 @@ FNR == 1 {
     only("^gmp", " reference ", "exact arithmetic")
     only("^(OpenImageIO/|tiny_gltf|nlohmann/)", " import ", "files")
     only("^(turbojpeg|jansson|libav)", " server ", "clients")
-    only("^(pthread|threads)\\.h$", " base server ", "the renderer has no threads but the job pool's")
     only("^(sys/socket|netinet/|arpa/|netdb)", " server ", "the renderer has no sockets")
 }
 
@@ -83,6 +83,10 @@ folder != "shadow" {
     for (i = 1; i <= algorithm_count; i++)
         if (index($0, "\"" algorithm[i] "\"") || index($0, "\"" algorithm[i] ":"))
             complain("names the shadow system '" algorithm[i] "': only renderer/shadow knows which there are")
+}
+
+/(pthread_create|thrd_create|std::(thread|async|jthread)) *[({ ]/ && folder != "base" && folder != "server" {
+    complain("starts a thread: the renderer has none but those of the job pool that it is given")
 }
 
 /"#version|gl_Position|gl_FragCoord/ && folder != "gl" {

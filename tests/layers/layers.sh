@@ -1,10 +1,10 @@
 #!/bin/sh
-# layers.sh TREE: checks who includes whom in TREE/renderer and TREE/server. Exit code 1 and one line for each fault.
+# layers.sh TREE: checks who includes whom in TREE/renderer, TREE/server and TREE/proto. Exit code 1 and one line for each fault.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$1"
-sources=$(find renderer server -name '*.[ch]' -o -name '*.cc' -o -name '*.cpp' -o -name '*.hpp' 2>/dev/null | LC_ALL=C sort)
-headers=$(find renderer server shaders -name '*.h' 2>/dev/null | LC_ALL=C sort)
+sources=$(find renderer server proto -name '*.[ch]' -o -name '*.cc' -o -name '*.hh' -o -name '*.[ch]pp' 2>/dev/null | LC_ALL=C sort)
+headers=$(find renderer server shaders proto -name '*.h' -o -name '*.hh' 2>/dev/null | LC_ALL=C sort)
 # none, auto and exact also mean other things (a tone map, a camera pass, a tracer).
 names=$(sed -n 's/^ *[A-Z_]*(\([a-z0-9_]*\).*/\1/p' renderer/shadow/algorithms.def 2>/dev/null | grep -vxE 'none|auto|exact' || true)
 words() { tr '\n' ' '; }

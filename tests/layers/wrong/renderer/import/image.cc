@@ -1,1 +1,2 @@
 #include <gmp.h>
+#include "import/shim.hh"

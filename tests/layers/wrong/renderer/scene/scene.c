@@ -4,3 +4,6 @@
 #include <sys/socket.h>
 #include "gl/texture.h"
 #include "missing.h"
+
+static pthread_mutex_t lock; /* a lock is no thread */
+void start(void) { pthread_create(0, 0, 0, 0); }
