@@ -61,8 +61,9 @@ static bool no_such_camera(const struct scene *scene, const char *name, struct e
     for (size_t i = 0; i < scene->camera_count && used + 40 < sizeof list; i++)
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%.30s", i ? ", " : "",
                                  scene->cameras[i].name[0] ? scene->cameras[i].name : "(unnamed)");
-    return error_set(err, ERROR_USAGE, "camera", "there is no camera '%.60s'; auto, an index 0 to %zu or a name (%s) are accepted",
-                     name, scene->camera_count - 1, list);
+    return error_set(err, ERROR_USAGE, "camera",
+                     "there is no camera '%.60s'; auto, an index 0 to %zu or a name (%s) are accepted", name,
+                     scene->camera_count - 1, list);
 }
 
 /* A name wins over an index, so that a camera called "2" can be chosen; "auto" is reserved. */

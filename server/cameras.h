@@ -8,20 +8,20 @@
 struct error;
 
 enum camera_source {
-    CAMERA_FIRST,    /* the scene's first, or the framing one when it has none */
-    CAMERA_NAMED,    /* by name, index or "auto" */
+    CAMERA_FIRST, /* the scene's first, or the framing one when it has none */
+    CAMERA_NAMED, /* by name, index or "auto" */
     CAMERA_LOOK_AT,
 };
 
 struct camera_choice {
     enum camera_source source;
-    const char *name;              /* CAMERA_NAMED; borrowed */
-    struct dvec3 eye, target, up;  /* CAMERA_LOOK_AT; world */
-    double fov_deg;                /* CAMERA_LOOK_AT; full vertical angle, FOV_MIN_DEG..FOV_MAX_DEG */
+    const char *name;             /* CAMERA_NAMED; borrowed */
+    struct dvec3 eye, target, up; /* CAMERA_LOOK_AT; world */
+    double fov_deg;               /* CAMERA_LOOK_AT; full vertical angle, FOV_MIN_DEG..FOV_MAX_DEG */
 };
 
-#define FOV_MIN_DEG 0.01
-#define FOV_MAX_DEG 179.0
+#define FOV_MIN_DEG     0.01
+#define FOV_MAX_DEG     179.0
 #define FOV_DEFAULT_DEG 45.0
 
 /* The scene's first camera. up = +Y and the default field of view for whoever makes it a look-at. */

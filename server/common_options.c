@@ -9,8 +9,9 @@
 #include "numbers.h"
 
 const char *const show_names[] = {
-    [SHOW_SHADED] = "shaded", [SHOW_VISIBILITY] = "visibility", [SHOW_DEPTH] = "depth",
-    [SHOW_NORMAL] = "normal", [SHOW_ID] = "id",                 NULL,
+    [SHOW_SHADED] = "shaded", [SHOW_VISIBILITY] = "visibility",
+    [SHOW_DEPTH] = "depth",   [SHOW_NORMAL] = "normal",
+    [SHOW_ID] = "id",         NULL,
 };
 const char *const tonemap_names[] = {[TONEMAP_ACES] = "aces", [TONEMAP_NONE] = "none", NULL};
 const char *const camera_pass_names[] = {
@@ -227,8 +228,8 @@ const struct option common_option_table[] = {
     {"target", "x,y,z", "look at this point, with --eye", set_target},
     {"up", "x,y,z", "what is up, with --eye (default 0,1,0)", set_up},
     {"fov", "DEG", "full vertical angle, with --eye (default 45)", set_fov},
-    {"light", "'KIND key=value ...'", "KIND point, spot or directional; repeat for more; replaces the scene's lights (keys below)",
-     set_light},
+    {"light", "'KIND key=value ...'",
+     "KIND point, spot or directional; repeat for more; replaces the scene's lights (keys below)", set_light},
     {"algorithm", "NAME[:key=value,...]", "shadow system and its parameters; gnomon list algorithms prints them", set_algorithm},
     {"show", "WHAT", "shaded, visibility, depth, normal or id (default shaded); difference is not built yet", set_show},
     {"exposure", "EV|auto", "stops, or from the scene's lights and size alone (default auto)", set_exposure},
@@ -236,8 +237,10 @@ const struct option common_option_table[] = {
     {"tonemap", "aces|none", "tone mapping of PNG, JPEG and WebP (default aces)", set_tonemap},
     {"aa", "1|4|16", "samples a pixel (default 1)", set_aa},
     {"time", "SECONDS", "moment of the scene's animation", NULL},
-    {"camera-pass", "auto|raster|traced", "how visible triangles are found (default: the faster on this device)", set_camera_pass},
-    {"frames-timed", "N", "frames to time, after 3 untimed ones (default 20 where figures are written)", set_frames_timed},
+    {"camera-pass", "auto|raster|traced", "how visible triangles are found (default: the faster on this device)",
+     set_camera_pass},
+    {"frames-timed", "N", "frames to time, after 3 untimed ones (default for --stats: 20, fewer where they are slow)",
+     set_frames_timed},
     {"moving", NULL, "turn the lights by 0.25 degrees for each timed frame", set_moving},
     {"threads", "N", "bounds all work (default SLURM_CPUS_PER_TASK, else the cores allowed)", set_threads},
     {"device", "INDEX|NODE|software", "which GPU; gnomon list devices prints them (default: the first that works)", set_device},
@@ -279,7 +282,8 @@ void common_options_init(struct common_options *options)
 bool common_options_check(struct common_options *o, struct error *err)
 {
     if (o->eye_given != o->target_given)
-        return error_set(err, ERROR_USAGE, o->eye_given ? "target" : "eye", "--eye and --target belong together: give both, or --camera");
+        return error_set(err, ERROR_USAGE, o->eye_given ? "target" : "eye",
+                         "--eye and --target belong together: give both, or --camera");
     if (o->eye_given && o->camera_named)
         return error_set(err, ERROR_USAGE, "camera", "--camera and --eye exclude each other: give one of them");
     if ((o->up_given || o->fov_given) && !o->eye_given)

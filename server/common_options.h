@@ -17,7 +17,7 @@ struct common_options {
     bool camera_named, eye_given, target_given, up_given, fov_given;
     struct light lights[RENDERER_LIGHTS_MAX]; /* world; none: the scene's */
     size_t light_count;
-    const struct shadow_system *system;       /* NULL: the renderer's default */
+    const struct shadow_system *system; /* NULL: the renderer's default */
     struct shadow_params params;
     enum show show;
     bool exposure_auto;
@@ -26,11 +26,11 @@ struct common_options {
     enum tonemap tonemap;
     unsigned aa;
     enum camera_pass camera_pass;
-    unsigned frames_timed;                    /* 0: not given */
+    unsigned frames_timed; /* 0: not given */
     bool moving;
-    unsigned threads;                         /* >= 1 */
-    const char *device;                       /* NULL: first that works */
-    const char *shader_dir;                   /* NULL: the built-in ones */
+    unsigned threads;       /* >= 1 */
+    const char *device;     /* NULL: first that works */
+    const char *shader_dir; /* NULL: the built-in ones */
     bool quiet;
 };
 

@@ -86,7 +86,9 @@ static bool check_range(const struct light_key *k, const double *values, struct 
         return true;
     return error_set(err, ERROR_USAGE, k->name, "%s is out of range; %s%g to %g (%s)%s accepted", k->name,
                      k->count == 3 ? "three numbers from " : "", k->min, k->max, k->unit,
-                     k == &keys[DIRECTION] ? ", not all zero, are" : k->count == 3 ? " are" : " is");
+                     k == &keys[DIRECTION] ? ", not all zero, are"
+                     : k->count == 3       ? " are"
+                                           : " is");
 }
 
 /* Scaled first, so that the length of a tiny or huge vector neither underflows nor overflows. */

@@ -70,8 +70,8 @@ bool number_parse_size(const char *text, uint32_t limit, uint32_t *width, uint32
         *x = 0;
     if (!x || strlen(text) >= sizeof copy || !number_parse_unsigned(copy, 1, limit, &w) ||
         !number_parse_unsigned(x + 1, 1, limit, &h))
-        return error_set(err, ERROR_USAGE, "size", "not a size; WIDTHxHEIGHT in pixels is accepted, each 1 to %u, such as 1280x720",
-                         limit);
+        return error_set(err, ERROR_USAGE, "size",
+                         "not a size; WIDTHxHEIGHT in pixels is accepted, each 1 to %u, such as 1280x720", limit);
     *width = (uint32_t)w;
     *height = (uint32_t)h;
     return true;

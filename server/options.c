@@ -190,8 +190,8 @@ enum { HELP_COLUMN = 30 };
 static void print_option(const struct option *option, FILE *out)
 {
     char left[120];
-    int n = snprintf(left, sizeof left, "  %s%s%s", spell(option).text, option->value ? " " : "",
-                     option->value ? option->value : "");
+    int n =
+        snprintf(left, sizeof left, "  %s%s%s", spell(option).text, option->value ? " " : "", option->value ? option->value : "");
     fprintf(out, "%-*s", HELP_COLUMN, left);
     if (n >= HELP_COLUMN)
         fprintf(out, "\n%*s", HELP_COLUMN, "");

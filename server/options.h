@@ -19,15 +19,15 @@ struct option {
 
 /* A command's arguments. */
 struct syntax {
-    const char *command;           /* "render" */
-    const char *usage;             /* what follows the command's name */
-    const char *summary;           /* one sentence */
-    const char *operand;           /* "SCENE"; NULL: takes none */
+    const char *command; /* "render" */
+    const char *usage;   /* what follows the command's name */
+    const char *summary; /* one sentence */
+    const char *operand; /* "SCENE"; NULL: takes none */
     bool operand_optional;
-    bool common;                   /* takes the common options too */
-    const struct option *options;  /* its own; target: `own` */
-    const char *notes;             /* paragraphs printed after the options; may be NULL */
-    const char *examples;          /* lines, each ended by a newline */
+    bool common;                  /* takes the common options too */
+    const struct option *options; /* its own; target: `own` */
+    const char *notes;            /* paragraphs printed after the options; may be NULL */
+    const char *examples;         /* lines, each ended by a newline */
 };
 
 enum parsed { PARSED_RUN, PARSED_HELP, PARSED_BAD };

@@ -1,0 +1,247 @@
+#include "comparison.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/error.h"
+#include "base/job_pool.h"
+#include "progress.h"
+#include "stage.h"
+#include "trace/tracer.h"
+
+bool against_parse(const char *text, struct against *out, struct error *err)
+{
+    *out = (struct against){.kind = AGAINST_POINT};
+    if (!strcmp(text, "point"))
+        return true;
+    out->kind = AGAINST_SAMPLES32;
+    if (!strcmp(text, "samples32"))
+        return true;
+    if (!strncmp(text, "arealight", 9))
+        return error_set(err, ERROR_USAGE, "against", "arealight is not built yet; point, samples32 or an algorithm is accepted");
+    out->kind = AGAINST_SYSTEM;
+    if (shadow_parse(text, &out->system, &out->params, err))
+        return true;
+    return error_prefix(err, "neither point nor samples32 nor an algorithm");
+}
+
+void against_format(const struct against *against, char *out, size_t size)
+{
+    if (against->kind == AGAINST_SYSTEM)
+        shadow_format(against->system, &against->params, out, size);
+    else
+        snprintf(out, size, "%s", against->kind == AGAINST_POINT ? "point" : "samples32");
+}
+
+void comparison_finish(struct comparison *c)
+{
+    for (size_t i = 0; i < RENDERER_LIGHTS_MAX; i++) {
+        free(c->tested[i]);
+        free(c->truth[i]);
+        free(c->receiver[i]);
+    }
+    free(c->ids);
+    free(c->one_triangle);
+    free(c->picture);
+    *c = (struct comparison){0};
+}
+
+static bool comparison_init(struct comparison *c, const struct render_settings *settings, struct error *err)
+{
+    *c = (struct comparison){.width = settings->width, .height = settings->height, .light_count = settings->light_count};
+    size_t pixels = (size_t)c->width * c->height;
+    c->ids = calloc(pixels, sizeof *c->ids);
+    c->one_triangle = calloc(pixels, 1);
+    c->picture = calloc(pixels, 4);
+    bool good = c->ids && c->one_triangle && c->picture;
+    for (size_t i = 0; i < c->light_count; i++) {
+        c->tested[i] = calloc(pixels, sizeof(float));
+        c->truth[i] = calloc(pixels, sizeof(float));
+        c->receiver[i] = calloc(pixels, 1);
+        good = good && c->tested[i] && c->truth[i] && c->receiver[i];
+    }
+    if (good)
+        return true;
+    return error_set(err, ERROR_TRY_AGAIN, "size",
+                     "memory is out for the visibility of %zu lights at %ux%u; a smaller --size is accepted", c->light_count,
+                     c->width, c->height);
+}
+
+/* A stretch of the whole bar. */
+struct stretch {
+    struct progress *progress;
+    double from, share;
+};
+
+static bool report_stretch(void *context, double done)
+{
+    const struct stretch *s = context;
+    if (s->progress)
+        progress_set(s->progress, s->from + s->share * done);
+    return true;
+}
+
+static bool read_visibility(struct stage *stage, const struct render_settings *settings, float *const *out, struct error *err)
+{
+    for (size_t i = 0; i < settings->light_count; i++)
+        if (!renderer_read_visibility(stage->renderer, (unsigned)i, out[i]))
+            return error_set(err, ERROR_TRY_AGAIN, NULL, "light %zu's visibility could not be read back from the device", i);
+    return true;
+}
+
+static bool render_tested(struct stage *stage, struct comparison *c, struct error *err)
+{
+    struct render_settings settings = stage->settings;
+    struct frame_info info;
+    settings.aa = 1;
+    settings.format = PIXELS_RGBA8;
+    settings.show = SHOW_SHADED;
+    if (!stage_frame(stage, &settings, c->picture, &info, err) || !read_visibility(stage, &settings, c->tested, err))
+        return false;
+    if (!renderer_read_ids(stage->renderer, c->ids))
+        return error_set(err, ERROR_TRY_AGAIN, NULL, "the triangle ids could not be read back from the device");
+    return true;
+}
+
+/* The other system sees the same ids: the camera pass does not depend on the system. */
+static bool render_truth(struct stage *stage, const struct against *against, struct comparison *c, struct error *err)
+{
+    struct render_settings settings = stage->settings;
+    struct frame_info info;
+    settings.aa = 1;
+    settings.format = PIXELS_RGBA8;
+    settings.system = against->system;
+    settings.params = against->params;
+    void *pixels = stage_picture(&settings, err);
+    bool good = pixels && stage_frame(stage, &settings, pixels, &info, err) && read_visibility(stage, &settings, c->truth, err);
+    free(pixels);
+    return good;
+}
+
+/* Which pixels lie wholly in one triangle: the camera's traced picture once for each sample, the view shifted so that the sample falls
+ * on the pixel's centre. Only a classification of pixels, so the tracer's single precision does. */
+static bool find_one_triangle(struct stage *stage, const struct view *view, struct comparison *c, struct error *err)
+{
+    size_t pixels = (size_t)c->width * c->height;
+    struct tracer *tracer = tracer_create(stage->scene, job_pool_threads(stage->pool), err);
+    uint32_t *first = malloc(pixels * sizeof *first), *ids = malloc(pixels * sizeof *ids);
+    bool good = tracer && first && ids;
+    if (tracer && !good)
+        error_set(err, ERROR_TRY_AGAIN, "size", "memory is out for the triangles of %zu pixels", pixels);
+    for (int i = 0; good && i < 32; i++) {
+        struct view shifted = *view;
+        double dx = (view_samples32[i][0] - 0.5) * (view->right_edge - view->left) / view->width;
+        double dy = (view_samples32[i][1] - 0.5) * (view->bottom - view->top) / view->height;
+        shifted.left += dx, shifted.right_edge += dx;
+        shifted.top += dy, shifted.bottom += dy;
+        tracer_camera(tracer, &shifted, stage->pool, i ? ids : first, NULL);
+        for (size_t p = 0; p < pixels; p++)
+            c->one_triangle[p] = i ? c->one_triangle[p] && ids[p] == first[p] : first[p] != SCENE_NONE;
+    }
+    free(ids);
+    free(first);
+    tracer_destroy(tracer);
+    return good;
+}
+
+static bool trace_samples32(const struct reference *reference, struct stage *stage, const struct view *view, size_t light,
+                            const struct reference_progress *progress, struct comparison *c, struct reference_counts *counts,
+                            struct error *err)
+{
+    size_t pixels = (size_t)c->width * c->height;
+    uint32_t *receivers = malloc(pixels * sizeof *receivers), *lit = malloc(pixels * sizeof *lit);
+    bool good = receivers && lit &&
+                reference_samples32(reference, view, &stage->settings.lights[light], stage->pool, progress, receivers, lit,
+                                    c->one_triangle, counts);
+    for (size_t p = 0; good && p < pixels; p++) {
+        int facing = __builtin_popcount(receivers[p]);
+        c->receiver[light][p] = facing > 0;
+        c->truth[light][p] = facing ? (float)__builtin_popcount(lit[p]) / (float)facing : 0;
+    }
+    free(receivers);
+    free(lit);
+    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference stopped early: memory is out");
+}
+
+/* With a system as the reference, tracing says only which pixels count. */
+static bool trace_point(const struct reference *reference, struct stage *stage, const struct view *view, size_t light,
+                        const struct reference_progress *progress, bool keep, struct comparison *c,
+                        struct reference_counts *counts, struct error *err)
+{
+    float *scratch = keep ? NULL : malloc((size_t)c->width * c->height * sizeof *scratch);
+    bool good = (keep || scratch) && reference_point(reference, view, &stage->settings.lights[light], c->ids, stage->pool,
+                                                     progress, keep ? c->truth[light] : scratch, c->receiver[light], counts);
+    free(scratch);
+    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference stopped early: memory is out");
+}
+
+static double milliseconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static bool trace_lights(const struct reference *reference, struct stage *stage, const struct against *against,
+                         const struct view *view, struct progress *progress, struct comparison *c, struct error *err)
+{
+    for (size_t i = 0; i < c->light_count; i++) {
+        struct reference_counts counts = {0};
+        struct stretch stretch = {progress, (double)i / (double)c->light_count, 1.0 / (double)c->light_count};
+        const struct reference_progress report = {report_stretch, &stretch};
+        bool good = against->kind == AGAINST_SAMPLES32
+                        ? trace_samples32(reference, stage, view, i, &report, c, &counts, err)
+                        : trace_point(reference, stage, view, i, &report, against->kind == AGAINST_POINT, c, &counts, err);
+        if (!good)
+            return false;
+        c->counts.rays += counts.rays;
+        c->counts.tests += counts.tests;
+        c->counts.exact += counts.exact;
+    }
+    return true;
+}
+
+static bool compute_truth(struct stage *stage, const struct against *against, struct progress *progress, struct comparison *c,
+                          struct error *err)
+{
+    struct view view = view_from_camera(&stage->settings.camera, c->width, c->height);
+    struct reference *reference = reference_create(stage->scene, job_pool_threads(stage->pool), err);
+    if (!reference)
+        return false;
+    double start = milliseconds();
+    bool good = trace_lights(reference, stage, against, &view, progress, c, err);
+    c->reference_ms = milliseconds() - start;
+    reference_destroy(reference);
+    return good && (against->kind == AGAINST_SAMPLES32 || find_one_triangle(stage, &view, c, err));
+}
+
+static bool measure(struct comparison *c, struct error *err)
+{
+    struct metrics_pool pool;
+    bool good = true;
+    metrics_pool_init(&pool);
+    for (size_t i = 0; good && i < c->light_count; i++) {
+        const struct metrics_input input = {
+            .width = c->width,
+            .height = c->height,
+            .visibility = c->tested[i],
+            .reference = c->truth[i],
+            .receiver = c->receiver[i],
+            .one_triangle = c->one_triangle,
+        };
+        good = metrics_pool_add(&pool, &input, &c->light[i]);
+    }
+    metrics_pool_finish(&pool);
+    c->total = pool.total;
+    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for the error figures");
+}
+
+bool comparison_run(struct stage *stage, const struct against *against, struct progress *progress, struct comparison *out,
+                    struct error *err)
+{
+    return comparison_init(out, &stage->settings, err) && render_tested(stage, out, err) &&
+           (against->kind != AGAINST_SYSTEM || render_truth(stage, against, out, err)) &&
+           compute_truth(stage, against, progress, out, err) && measure(out, err);
+}

@@ -1,0 +1,13 @@
+/* The picture of a comparison: where the tested visibility is wrong, and which way. */
+#pragma once
+
+#include <stdint.h>
+
+struct comparison;
+
+/* Over a grey, darkened copy of the picture: orange where a pixel is too bright (a leak), blue where it is too dark (acne), the stronger the
+ * larger |V - Vref|, of the light with the largest. `rgba8`: width * height * 4. */
+void difference_paint(const struct comparison *c, uint8_t *rgba8);
+
+/* The numbers of the same light: R = V, G = Vref, B = V - Vref, A = 1 where the pixel counts. `rgba32f`: width * height * 4. */
+void difference_numbers(const struct comparison *c, float *rgba32f);

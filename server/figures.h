@@ -1,0 +1,19 @@
+/* The figures of `render --stats` and `compare --json`. Names are a promise: they stay. */
+#pragma once
+
+#include <jansson.h>
+
+#include "renderer.h"
+
+struct measurement;
+struct metrics;
+
+/* One measured picture. The caller owns the object; NULL when memory is out. */
+json_t *figures_render(const struct scene *scene, const struct render_settings *settings, const struct device_info *device,
+                       const struct measurement *measured);
+
+/* The error figures of one light, or pooled over all. What was not measured is null. */
+json_t *figures_errors(const struct metrics *metrics);
+
+/* Values of a system's parameters: {"size": 1024, "layout": "exact", ...}; a choice that is a number is written as one. */
+json_t *figures_params(const struct shadow_system *system, const struct shadow_params *params);
