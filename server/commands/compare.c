@@ -1,0 +1,218 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "command.h"
+#include "common_options.h"
+#include "comparison.h"
+#include "difference.h"
+#include "figures.h"
+#include "import/import.h"
+#include "lights.h"
+#include "measure.h"
+#include "options.h"
+#include "output.h"
+#include "progress.h"
+#include "stage.h"
+
+struct compare_options {
+    struct common_options common;
+    struct against against;
+    const char *picture; /* NULL: none */
+    enum image_format format;
+    const char *json; /* NULL: none */
+};
+
+static bool set_against(void *target, const char *value, struct error *err)
+{
+    return against_parse(value, &((struct compare_options *)target)->against, err);
+}
+
+static bool set_picture(void *target, const char *value, struct error *err)
+{
+    struct compare_options *o = target;
+    o->picture = value;
+    o->format = IMAGE_PNG;
+    if (!strcmp(value, "-") || image_format_from_name(value, &o->format))
+        return true;
+    return error_set(err, ERROR_USAGE, "o", "has no known extension; .png, .jpg, .webp and .exr are accepted");
+}
+
+static bool set_json(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct compare_options *)target)->json = value;
+    return true;
+}
+
+static const struct option option_table[] = {
+    {"against", "REF", "point, samples32 or an algorithm (default point); arealight is not built yet", set_against},
+    {"o", "DIFF", "picture of the differences; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_picture},
+    {"json", "FILE", "times, memory and error figures as JSON; - is standard output", set_json},
+    {0},
+};
+
+static const struct syntax syntax = {
+    .command = "compare",
+    .usage = "SCENE --algorithm A [--against REF] [-o DIFF.png] [--json FILE] [options]",
+    .summary = "Measures how far a shadow system's visibility is from ray tracing's.",
+    .operand = "SCENE",
+    .common = true,
+    .options = option_table,
+    .notes =
+        "References: point traces one ray for the triangle at each pixel centre; samples32 traces 32 samples a pixel.\n\n"
+        "The difference picture: grey, where right; orange, where too bright (light leaks); blue, where too dark (acne); stronger\n"
+        "colour, larger difference; with several lights, the largest. As EXR: R = tested, G = reference, B = tested - reference,\n"
+        "A = 1 where the pixel counts.\n\n"
+        "Figures are measured at one sample a pixel; --aa, --moving and --frames-timed change only the times of --json.\n",
+    .examples = "  gnomon compare builtin:dragon --algorithm sm:size=1024 -o difference.png\n"
+                "  gnomon compare model.glb --algorithm pcf:kernel=7 --against samples32 --json -\n"
+                "  gnomon compare model.glb --algorithm pcf --against sm:size=4096\n",
+};
+
+static json_t *light_rows(const struct stage *stage, const struct comparison *c)
+{
+    json_t *rows = json_array();
+    for (size_t i = 0; i < c->light_count; i++) {
+        const struct light *light = &stage->settings.lights[i];
+        json_t *row = figures_errors(&c->light[i]);
+        json_object_set_new(row, "light", json_integer((json_int_t)i));
+        json_object_set_new(row, "name", json_text(light->name));
+        json_object_set_new(row, "kind", json_string(light_kind_names[light->kind]));
+        json_array_append_new(rows, row);
+    }
+    return rows;
+}
+
+/* Adds what only a comparison has to the figures of the timed frames. */
+static void add_errors(json_t *figures, const struct compare_options *o, const struct stage *stage, const struct comparison *c)
+{
+    static const char *const of_lists[] = {"identified_fraction", "identified_pooled", "texels_over_4"};
+    char against[300];
+    against_format(&o->against, against, sizeof against);
+    json_t *errors = figures_errors(&c->total);
+    json_object_update(figures, errors);
+    json_decref(errors);
+    for (size_t i = 0; i < sizeof of_lists / sizeof of_lists[0]; i++)
+        json_object_set_new(figures, of_lists[i], json_null());
+    json_object_set_new(figures, "against", json_string(against));
+    json_object_set_new(figures, "reference",
+                        json_pack("{s:I, s:I, s:I, s:f}", "rays", (json_int_t)c->counts.rays, "tests",
+                                  (json_int_t)c->counts.tests, "exact", (json_int_t)c->counts.exact, "ms", c->reference_ms));
+    json_object_set_new(figures, "per_light", light_rows(stage, c));
+}
+
+static void print_row(const char *name, const struct metrics *m)
+{
+    printf("%-24.24s %10llu %13llu %10.6f %9.6f %7.3f %7llu %7llu %9.2f\n", name, (unsigned long long)m->receivers,
+           (unsigned long long)m->misclassified, m->misclassified_fraction, m->rmse, m->max_abs, (unsigned long long)m->leaks,
+           (unsigned long long)m->acne, m->boundary.edge_shift_p95);
+}
+
+static void print_table(const struct compare_options *o, const struct stage *stage, const struct comparison *c)
+{
+    char against[300], tested[300];
+    against_format(&o->against, against, sizeof against);
+    shadow_format(stage->settings.system, &stage->settings.params, tested, sizeof tested);
+    printf("%s against %s, %ux%u, %zu triangles drawn\n", tested, against, c->width, c->height,
+           stage->scene->drawn_triangle_count);
+    printf("%-24s %10s %13s %10s %9s %7s %7s %7s %9s\n", "light", "receivers", "misclassified", "fraction", "rmse", "max",
+           "leaks", "acne", "edge p95");
+    for (size_t i = 0; c->light_count > 1 && i < c->light_count; i++) {
+        char name[100];
+        const struct light *light = &stage->settings.lights[i];
+        snprintf(name, sizeof name, "%zu %s", i, light->name[0] ? light->name : light_kind_names[light->kind]);
+        print_row(name, &c->light[i]);
+    }
+    print_row(c->light_count == 1 ? light_kind_names[stage->settings.lights[0].kind] : "all", &c->total);
+    printf("edge p95: 95 %% of the reference's shadow edge lies within that many 1/32 pixels of the tested one\n");
+}
+
+static bool write_picture(const struct compare_options *o, const struct stage *stage, const struct comparison *c,
+                          struct error *err)
+{
+    struct render_settings settings = stage->settings;
+    settings.format = o->format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
+    void *pixels = stage_picture(&settings, err);
+    if (!pixels)
+        return false;
+    if (o->format == IMAGE_EXR)
+        difference_numbers(c, pixels);
+    else
+        difference_paint(c, pixels);
+    char tested[300], against[300];
+    shadow_format(settings.system, &settings.params, tested, sizeof tested);
+    against_format(&o->against, against, sizeof against);
+    const struct image_metadata metadata[] = {
+        {"Software", "gnomon " GNOMON_VERSION}, {"gnomon:algorithm", tested}, {"gnomon:against", against}};
+    bool good = image_write(o->picture, o->format, pixels, c->width, c->height, 90, metadata, 3, err);
+    free(pixels);
+    return good;
+}
+
+static bool check_outputs(const struct compare_options *o, struct error *err)
+{
+    if (!o->common.system)
+        return error_set(err, ERROR_USAGE, "algorithm",
+                         "compare needs --algorithm NAME; gnomon list algorithms prints what is accepted");
+    if (o->picture && o->json && !strcmp(o->picture, "-") && !strcmp(o->json, "-"))
+        return error_set(err, ERROR_USAGE, "json", "-o - and --json - exclude each other: standard output carries one thing");
+    return (!o->picture || output_check(o->picture, err)) && (!o->json || output_check(o->json, err));
+}
+
+/* Times are taken before the comparison, so that its trees do not count in the peak of memory. */
+static bool time_frames(const struct compare_options *o, struct stage *stage, json_t **figures, struct error *err)
+{
+    struct progress progress;
+    struct measurement measured;
+    unsigned frames = o->common.frames_timed ? o->common.frames_timed : 1;
+    progress_init(&progress, "timing", o->common.quiet);
+    bool good = measure_frames(stage, frames, o->common.moving, &progress, &measured, err);
+    progress_finish(&progress);
+    if (!good)
+        return false;
+    *figures = figures_render(stage->scene, &stage->settings, renderer_device(stage->renderer), &measured);
+    return *figures || error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for the figures");
+}
+
+static bool compare(const struct compare_options *o, struct stage *stage, struct error *err)
+{
+    json_t *figures = NULL;
+    struct comparison c = {0};
+    struct progress progress;
+    progress_init(&progress, "comparing", o->common.quiet);
+    bool good = (!o->json || time_frames(o, stage, &figures, err)) && comparison_run(stage, &o->against, &progress, &c, err);
+    progress_finish(&progress);
+    good = good && (!o->picture || write_picture(o, stage, &c, err));
+    if (good && o->json) {
+        add_errors(figures, o, stage, &c);
+        good = output_json(o->json, figures, err);
+        figures = NULL;
+    }
+    bool stdout_taken = (o->json && !strcmp(o->json, "-")) || (o->picture && !strcmp(o->picture, "-"));
+    if (good && !stdout_taken) {
+        print_table(o, stage, &c);
+        good = output_flush(err);
+    }
+    json_decref(figures);
+    comparison_finish(&c);
+    return good;
+}
+
+int command_compare(int argc, char **argv)
+{
+    struct compare_options options = {0};
+    struct stage stage = {0};
+    struct error err = {0};
+    const char *scene = NULL;
+    common_options_init(&options.common);
+    int code = options_start(&syntax, argc, argv, &options, &options.common, &scene);
+    if (code >= 0)
+        return code;
+    bool good =
+        check_outputs(&options, &err) && stage_init(&stage, scene, &options.common, &err) && compare(&options, &stage, &err);
+    stage_finish(&stage);
+    return good ? 0 : command_fail(&err);
+}

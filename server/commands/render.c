@@ -1,0 +1,169 @@
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "command.h"
+#include "common_options.h"
+#include "figures.h"
+#include "import/import.h"
+#include "measure.h"
+#include "options.h"
+#include "output.h"
+#include "progress.h"
+#include "stage.h"
+
+struct render_options {
+    struct common_options common;
+    const char *output;
+    enum image_format format;
+    const char *stats; /* NULL: none */
+};
+
+static bool set_output(void *target, const char *value, struct error *err)
+{
+    struct render_options *o = target;
+    o->output = value;
+    if (!strcmp(value, "-")) {
+        o->format = IMAGE_PNG;
+        return true;
+    }
+    if (image_format_from_name(value, &o->format))
+        return true;
+    return error_set(err, ERROR_USAGE, "o", "has no known extension; .png, .jpg, .webp and .exr are accepted");
+}
+
+static bool set_stats(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct render_options *)target)->stats = value;
+    return true;
+}
+
+static const struct option option_table[] = {
+    {"o", "FILE", "the picture; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_output},
+    {"stats", "FILE", "times, memory and sizes as JSON; - is standard output", set_stats},
+    {"server", "URL", "let a running server render", NULL},
+    {"progressive", "N", "add up N frames", NULL},
+    {0},
+};
+
+static const struct syntax syntax = {
+    .command = "render",
+    .usage = "SCENE -o FILE [options]",
+    .summary = "Renders a scene to a picture: sRGB 8 bit for PNG, JPEG and WebP, linear float before tone mapping for EXR.",
+    .operand = "SCENE",
+    .common = true,
+    .options = option_table,
+    .notes =
+        "Lights: position=x,y,z direction=x,y,z color=r,g,b intensity=X radius=X inner=DEG outer=DEG range=X; world coordinates,\n"
+        "scene units, degrees, candela (point, spot) or lux (directional).\n",
+    .examples = "  gnomon render model.glb -o picture.png\n"
+                "  gnomon render builtin:dragon -o dragon.exr --size 1920x1080 --algorithm sm:size=2048 --stats -\n"
+                "  gnomon render model.glb -o top.jpg --eye 0,5,5 --target 0,0,0 --fov 35 \\\n"
+                "      --light 'spot position=2,4,1 direction=-2,-4,-1 intensity=500 inner=10 outer=30'\n",
+};
+
+/* Text that a picture carries with it. */
+struct stamp {
+    char hash[20], camera[240], algorithm[300], device[130], milliseconds[32], scene[130];
+    struct image_metadata entries[7];
+};
+
+enum { STAMP_ENTRIES = 7 };
+
+static void describe_camera(const struct scene *scene, const struct camera *c, char *out, size_t size)
+{
+    struct dvec3 eye = dvec3_add(c->eye, scene->origin), forward = dvec3_neg(c->back);
+    snprintf(out, size, "eye=%.9g,%.9g,%.9g forward=%.9g,%.9g,%.9g up=%.9g,%.9g,%.9g %s=%.9g", eye.x, eye.y, eye.z, forward.x,
+             forward.y, forward.z, c->up.x, c->up.y, c->up.z, c->orthographic ? "height" : "fov",
+             c->orthographic ? 2 * c->ymag : c->yfov * (180 / M_PI));
+}
+
+static void stamp_fill(struct stamp *s, const struct stage *stage, double frame_ms)
+{
+    snprintf(s->scene, sizeof s->scene, "%s", stage->scene->name);
+    snprintf(s->hash, sizeof s->hash, "%016" PRIx64, stage->scene->hash);
+    describe_camera(stage->scene, &stage->settings.camera, s->camera, sizeof s->camera);
+    shadow_format(stage->settings.system, &stage->settings.params, s->algorithm, sizeof s->algorithm);
+    snprintf(s->device, sizeof s->device, "%s", renderer_device(stage->renderer)->renderer);
+    snprintf(s->milliseconds, sizeof s->milliseconds, "%.3f", frame_ms);
+    const struct image_metadata entries[STAMP_ENTRIES] = {
+        {"Software", "gnomon " GNOMON_VERSION}, {"gnomon:scene", s->scene},         {"gnomon:scene_hash", s->hash},
+        {"gnomon:camera", s->camera},           {"gnomon:algorithm", s->algorithm}, {"gnomon:device", s->device},
+        {"gnomon:render_ms", s->milliseconds},
+    };
+    memcpy(s->entries, entries, sizeof entries);
+}
+
+enum { PICTURE_QUALITY = 90 }; /* JPEG and WebP */
+
+static bool write_picture(const struct render_options *o, struct stage *stage, double *frame_ms, struct error *err)
+{
+    struct frame_info info;
+    struct stamp stamp;
+    void *pixels = stage_picture(&stage->settings, err);
+    bool good = pixels && stage_frame(stage, &stage->settings, pixels, &info, err);
+    if (good) {
+        *frame_ms = info.frame_ms;
+        stamp_fill(&stamp, stage, info.frame_ms);
+        good = image_write(o->output, o->format, pixels, stage->settings.width, stage->settings.height, PICTURE_QUALITY,
+                           stamp.entries, STAMP_ENTRIES, err);
+    }
+    free(pixels);
+    return good;
+}
+
+/* Frames are timed when somebody will read the times, or asked for it. */
+static bool write_stats(const struct render_options *o, struct stage *stage, double frame_ms, struct error *err)
+{
+    if (!o->stats && !o->common.frames_timed)
+        return true;
+    struct progress progress;
+    struct measurement measured;
+    unsigned frames = o->common.frames_timed ? o->common.frames_timed : measure_default_frames(frame_ms);
+    progress_init(&progress, "timing", o->common.quiet);
+    bool good = measure_frames(stage, frames, o->common.moving, &progress, &measured, err);
+    progress_finish(&progress);
+    if (!good)
+        return false;
+    if (!o->stats) {
+        if (!o->common.quiet)
+            fprintf(stderr, "%u frames: min %.2f ms, median %.2f ms, p95 %.2f ms\n", frames, measured.min_ms, measured.median_ms,
+                    measured.p95_ms);
+        return true;
+    }
+    return output_json(o->stats, figures_render(stage->scene, &stage->settings, renderer_device(stage->renderer), &measured),
+                       err);
+}
+
+static bool check_outputs(const struct render_options *o, struct error *err)
+{
+    if (!o->output)
+        return error_set(err, ERROR_USAGE, "o", "render needs -o FILE; .png, .jpg, .webp and .exr are accepted");
+    if (o->stats && !strcmp(o->output, "-") && !strcmp(o->stats, "-"))
+        return error_set(err, ERROR_USAGE, "stats", "-o - and --stats - exclude each other: standard output carries one thing");
+    return output_check(o->output, err) && (!o->stats || output_check(o->stats, err));
+}
+
+int command_render(int argc, char **argv)
+{
+    struct render_options options = {0};
+    struct stage stage = {0};
+    struct error err = {0};
+    const char *scene = NULL;
+    double frame_ms = 0;
+    common_options_init(&options.common);
+    int code = options_start(&syntax, argc, argv, &options, &options.common, &scene);
+    if (code >= 0)
+        return code;
+    bool good = check_outputs(&options, &err) && stage_init(&stage, scene, &options.common, &err);
+    if (good) {
+        stage.settings.format = options.format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
+        good = write_picture(&options, &stage, &frame_ms, &err) && write_stats(&options, &stage, frame_ms, &err);
+    }
+    stage_finish(&stage);
+    return good ? 0 : command_fail(&err);
+}
