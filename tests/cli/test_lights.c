@@ -22,7 +22,8 @@ static struct light parse(const char *text)
 static void reads_every_key(void **state)
 {
     (void)state;
-    struct light l = parse("spot position=1,2,3 direction=0,-2,0 color=1,0.5,0.25 intensity=100 radius=0.1 inner=10 outer=30 range=50");
+    struct light l =
+        parse("spot position=1,2,3 direction=0,-2,0 color=1,0.5,0.25 intensity=100 radius=0.1 inner=10 outer=30 range=50");
     assert_int_equal(l.kind, LIGHT_SPOT);
     assert_true(l.position.x == 1 && l.position.y == 2 && l.position.z == 3);
     assert_true(l.direction.x == 0 && l.direction.y == -1 && l.direction.z == 0);
@@ -121,12 +122,9 @@ static void moves_into_scene_space(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_every_key),
-        cmocka_unit_test(takes_the_extensions_defaults),
-        cmocka_unit_test(normalizes_any_direction),
-        cmocka_unit_test(refuses_and_says_what_it_takes),
-        cmocka_unit_test(refuses_endless_text),
-        cmocka_unit_test(moves_into_scene_space),
+        cmocka_unit_test(reads_every_key),          cmocka_unit_test(takes_the_extensions_defaults),
+        cmocka_unit_test(normalizes_any_direction), cmocka_unit_test(refuses_and_says_what_it_takes),
+        cmocka_unit_test(refuses_endless_text),     cmocka_unit_test(moves_into_scene_space),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

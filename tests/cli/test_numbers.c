@@ -52,8 +52,9 @@ static void reads_sizes(void **state)
     assert_int_equal(w, 1280);
     assert_int_equal(h, 720);
     assert_true(number_parse_size("1x16384", 16384, &w, &h, &err));
-    static const char *const bad[] = {"", "x", "1280", "1280x", "x720", "0x1", "1x0", "16385x1", "1x16385", "-1x1", "1 x 1", "1x1x1",
-                                      "1280X720", "4294967297x1", "00000000000000000000000000000000000001x1"};
+    static const char *const bad[] = {"",      "x",     "1280",     "1280x",        "x720",
+                                      "0x1",   "1x0",   "16385x1",  "1x16385",      "-1x1",
+                                      "1 x 1", "1x1x1", "1280X720", "4294967297x1", "00000000000000000000000000000000000001x1"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct error e = {0};
         assert_false(number_parse_size(bad[i], 16384, &w, &h, &e));
@@ -93,7 +94,7 @@ static void lists_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(takes_decimal_numbers), cmocka_unit_test(refuses_what_is_not_all_number),
+        cmocka_unit_test(takes_decimal_numbers),  cmocka_unit_test(refuses_what_is_not_all_number),
         cmocka_unit_test(reads_unsigned_numbers), cmocka_unit_test(reads_sizes),
         cmocka_unit_test(reads_points),           cmocka_unit_test(lists_names),
     };
