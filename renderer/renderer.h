@@ -43,7 +43,6 @@ struct renderer *renderer_create(const struct renderer_options *options, struct 
 void renderer_destroy(struct renderer *r); /* accepts NULL; every render_scene must be gone */
 
 /* Every device that EGL offers, tried (gl/device.h); returns how many were written to `out` (at most `max`). Needs no renderer. */
-#define device_info gl_device_info
 size_t renderer_list_devices(struct device_info *out, size_t max);
 /* The device in use. */
 const struct device_info *renderer_device(const struct renderer *r);
@@ -66,6 +65,7 @@ struct render_settings {
     enum tonemap tonemap;
     unsigned aa;                   /* samples a pixel: 1, 4 or 16 */
     enum camera_pass camera_pass;
+    enum camera_pass map_pass;     /* the same choice for depth maps from lights */
     enum pixel_format format;
     bool finish_each_pass;         /* waits after each pass so that pass times are true on any device */
 };

@@ -16,7 +16,7 @@
 
 /* One way to get a display, and what became of it. */
 struct attempt {
-    struct gl_device_info info;
+    struct device_info info;
     EGLDeviceEXT device; /* platform "device" */
 };
 
@@ -163,7 +163,7 @@ static bool make_context(struct gl_context *gl, struct attempt *a, bool debug)
     return true;
 }
 
-static void read_strings(struct gl_device_info *info)
+static void read_strings(struct device_info *info)
 {
     snprintf(info->vendor, sizeof info->vendor, "%s", (const char *)glGetString(GL_VENDOR));
     snprintf(info->renderer, sizeof info->renderer, "%s", (const char *)glGetString(GL_RENDERER));
@@ -209,7 +209,7 @@ static void set_initial_state(bool debug)
 
 static bool is_number(const char *text) { return text[0] && strspn(text, "0123456789") == strlen(text); }
 
-static bool wanted(const struct gl_device_info *info, const char *device)
+static bool wanted(const struct device_info *info, const char *device)
 {
     if (!device)
         return true;
@@ -286,7 +286,7 @@ bool gl_check_at(struct gl_context *gl, const char *where, struct error *err)
     return error_set(err, ERROR_BUG, NULL, "GL error 0x%04x in %s", code, where);
 }
 
-size_t gl_device_list(struct gl_device_info *out, size_t max)
+size_t gl_device_list(struct device_info *out, size_t max)
 {
     struct attempt attempts[DEVICES_MAX + 2];
     size_t count = collect_attempts(attempts), n = 0;

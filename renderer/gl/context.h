@@ -11,6 +11,7 @@
 #include "gl/device.h"
 
 struct error;
+struct gl_programs;
 
 struct gl_caps {
     bool software;            /* llvmpipe or another rasterizer on the CPU: shares the cores with everything else */
@@ -21,10 +22,11 @@ struct gl_caps {
 };
 
 struct gl_context {
-    struct gl_device_info device;
+    struct device_info device;
     struct gl_caps caps;
     char cache_key[320];      /* vendor, renderer and version: what a program binary depends on */
     bool failed;              /* sticky: a GL error or a reset was seen (gl_check) */
+    struct gl_programs *programs; /* set by gl_programs_create(): whoever draws finds its programs here */
     void *display, *context;  /* EGLDisplay, EGLContext */
     void *gbm;                /* struct gbm_device, NULL unless platform gbm */
     int gbm_fd;

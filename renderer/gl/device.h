@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct gl_device_info {
+struct device_info {
     int index;            /* what --device takes; -1: a platform without an index */
     char platform[16];    /* "device", "surfaceless", "gbm" */
     char node[64];        /* DRM node, "" if none */
@@ -15,4 +15,4 @@ struct gl_device_info {
 };
 
 /* Tries every device; returns how many were written to `out` (at most `max`). Makes and destroys a context for each. */
-size_t gl_device_list(struct gl_device_info *out, size_t max);
+size_t gl_device_list(struct device_info *out, size_t max);

@@ -43,6 +43,7 @@ struct gl_programs *gl_programs_create(struct gl_context *gl, const char *shader
     programs->shader_dir = copy(shader_dir);
     programs->cache_dir = copy(cache_dir);
     programs->newest = shader_dir ? shader_source_newest(shader_dir) : 0;
+    gl->programs = programs;
     return programs;
 }
 
@@ -58,6 +59,7 @@ void gl_programs_destroy(struct gl_programs *programs)
         free(p->defines);
         free(p);
     }
+    programs->gl->programs = NULL;
     free(programs->shader_dir);
     free(programs->cache_dir);
     free(programs);

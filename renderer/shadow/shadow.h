@@ -15,6 +15,7 @@
 struct error;
 struct gl_texture;
 struct job_pool;
+struct reference;
 struct tracer;
 struct gbuffer;
 struct draw_scene;
@@ -57,10 +58,13 @@ struct shadow_input {
     const struct shadow_fit *fit;     /* NULL for systems without SHADOW_USES_MAPS */
     const double *params;             /* the values, in the order of the system's descriptors */
     const struct view *view;          /* the camera; resolve, and prepare of view-driven systems */
-    const struct gbuffer *gbuffer;    /* likewise */
+    struct gbuffer *gbuffer;          /* likewise */
     struct draw_scene *draw;          /* the scene on the GPU */
-    struct tracer *(*tracer)(void *owner); /* the scene's ray tracer, made when first asked for; NULL when that failed */
+    /* The scene's ray tracers, made when first asked for; NULL with err set when that failed. */
+    const struct tracer *(*tracer)(void *owner, struct error *err);
+    const struct reference *(*reference)(void *owner, struct error *err);
     void *owner;
+    bool trace_maps;                  /* make depth maps by tracing (draw/producer.h) */
     struct job_pool *pool;
     struct gl_context *gl;
 };
@@ -95,6 +99,9 @@ struct shadow_system {
 /* The registry, in the order of algorithms.def. */
 extern const struct shadow_system *const shadow_systems[];
 extern const size_t shadow_system_count;
+
+/* What is used when nobody chose. */
+const struct shadow_system *shadow_default(void);
 
 /* NULL if there is none of that name. */
 const struct shadow_system *shadow_find(const char *name, size_t length);

@@ -1,0 +1,178 @@
+#include "frame.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <string.h>
+
+#include "blocks.h"
+#include "draw/producer.h"
+#include "passes/camera.h"
+#include "render_scene.h"
+
+_Static_assert((int)SHOW_SHADED == LIGHTING_SHADED && (int)SHOW_VISIBILITY == LIGHTING_VISIBILITY && (int)SHOW_DEPTH == LIGHTING_DEPTH &&
+                   (int)SHOW_NORMAL == LIGHTING_NORMAL && (int)SHOW_ID == LIGHTING_ID,
+               "enum show and enum lighting_show");
+_Static_assert(RENDERER_LIGHTS_MAX == LIGHTS_MAX && SHADOW_MAPS_MAX == MAPS_MAX && SHADOW_PARAM_MAX <= 16, "blocks.h");
+
+static bool choose_traced(const struct renderer *r, const struct scene *scene, enum camera_pass choice, size_t rays)
+{
+    if (choice != CAMERA_PASS_AUTO)
+        return choice == CAMERA_PASS_TRACED;
+    return producer_prefers_tracing(&r->gl.caps, scene->drawn_triangle_count, rays);
+}
+
+static void mark(struct renderer *r, enum render_pass pass, struct frame_info *info)
+{
+    info->pass_ms[pass] = gl_timer_mark(&r->timer, pass);
+}
+
+static bool run_camera(struct renderer *r, struct render_scene *s, const struct render_settings *settings, struct frame_info *info,
+                       struct error *err)
+{
+    size_t pixels = (size_t)r->gbuffer.view.view.width * r->gbuffer.view.view.height;
+    info->traced_camera = choose_traced(r, s->scene, settings->camera_pass, pixels);
+    if (info->traced_camera) {
+        const struct tracer *tracer = render_scene_tracer(s, err);
+        if (!tracer || !camera_trace(&r->gbuffer, &s->draw, tracer, r->pool, err))
+            return false;
+    } else if (!camera_rasterize(&r->gbuffer, &s->draw, err)) {
+        return false;
+    }
+    mark(r, PASS_CAMERA, info);
+    bool ok = camera_receivers(&r->gbuffer, &s->draw, err);
+    mark(r, PASS_RECEIVERS, info);
+    return ok;
+}
+
+static void put(vec4 out, struct dvec3 v, double w)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+    out[3] = (float)w;
+}
+
+/* What shaders/receiver.glsl and PARAM() read. */
+static bool bind_light(struct renderer *r, const struct shadow_input *in, size_t param_count, struct error *err)
+{
+    struct light_block block = {0};
+    put(block.light_position, dvec3_sub(in->light->position, in->view->eye), in->light->kind);
+    put(block.light_direction, in->light->direction, in->light->kind == LIGHT_DIRECTIONAL ? 0 : in->light->range);
+    put(block.light_cone, dvec3(cos(in->light->outer), 0, 0), 0);
+    struct params_block params = {0};
+    for (size_t i = 0; i < param_count; i++)
+        params.params[i / 4][i % 4] = (float)in->params[i];
+    if (!gl_buffer_set(&r->light_block, &r->gl, &block, sizeof block, 0, err) ||
+        !gl_buffer_set(&r->params_block, &r->gl, &params, sizeof params, 0, err))
+        return false;
+    glBindBufferBase(GL_UNIFORM_BUFFER, 2, r->light_block.id);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 4, r->params_block.id);
+    return true;
+}
+
+static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings, unsigned light)
+{
+    int size = shadow_param_index(settings->system, "size");
+    double side = size >= 0 ? settings->params.value[size] : 0;
+    return (struct shadow_input){
+        .scene = s->scene,
+        .light = &settings->lights[light],
+        .light_index = light,
+        .view = &r->gbuffer.view.view,
+        .gbuffer = &r->gbuffer,
+        .draw = &s->draw,
+        .tracer = render_scene_tracer,
+        .reference = render_scene_reference,
+        .owner = s,
+        .trace_maps = settings->system->flags & SHADOW_USES_MAPS &&
+                      choose_traced(r, s->scene, settings->map_pass, (size_t)(side * side)),
+        .pool = r->pool,
+        .gl = &r->gl,
+    };
+}
+
+static bool prepare_lights(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
+                           struct shadow_input *inputs, struct frame_info *info, struct error *err)
+{
+    light_states_begin(&s->states);
+    memset(s->current, 0, sizeof s->current);
+    for (unsigned i = 0; i < settings->light_count; i++) {
+        inputs[i] = input_for(r, s, settings, i);
+        s->current[i] = light_states_get(&s->states, &s->fit, settings->system, &settings->params, &inputs[i], &info->prepared, err);
+        if (!s->current[i])
+            return false;
+    }
+    mark(r, PASS_PREPARE, info);
+    return true;
+}
+
+static bool resolve_lights(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
+                           const struct shadow_input *inputs, struct frame_info *info, struct error *err)
+{
+    const struct view *view = &r->gbuffer.view.view;
+    uint32_t layers = settings->light_count ? (uint32_t)settings->light_count : 1;
+    if (!gl_texture_size_layers(&r->visibility, &r->gl, GL_R32F, view->width, view->height, layers, err))
+        return false;
+    for (unsigned i = 0; i < settings->light_count; i++) {
+        gl_target_attach(&r->visibility_target, &r->visibility, NULL, i);
+        gl_target_bind(&r->visibility_target, view->width, view->height);
+        if (!bind_light(r, &inputs[i], settings->system->param_count, err) ||
+            !settings->system->resolve(s->current[i]->state, &inputs[i], err))
+            return false;
+    }
+    mark(r, PASS_RESOLVE, info);
+    return true;
+}
+
+static bool run_lighting(struct renderer *r, struct render_scene *s, const struct render_settings *settings, unsigned aa_side,
+                         struct frame_info *info, struct error *err)
+{
+    double lux = lighting_illuminance(s->scene, settings->lights, settings->light_count);
+    /* auto: white facing all lights at the scene's centre becomes 1. */
+    double automatic = lux > 0 ? M_PI / lux : 1;
+    bool plain = settings->tonemap == TONEMAP_NONE || settings->show != SHOW_SHADED;
+    struct lighting_input in = {
+        .scene = &s->draw,
+        .gbuffer = &r->gbuffer,
+        .visibility = &r->visibility,
+        .lights = settings->lights,
+        .light_count = settings->light_count,
+        .show = (enum lighting_show)settings->show,
+        .display = settings->format == PIXELS_RGBA32F ? LIGHTING_LINEAR : plain ? LIGHTING_SRGB : LIGHTING_ACES,
+        .exposure = settings->exposure_auto ? automatic : exp2(settings->exposure_ev),
+        .ambient = settings->ambient * (lux > 0 ? lux / M_PI : 1),
+        .aa_side = aa_side,
+    };
+    bool ok = lighting_run(&r->lighting, &in, err);
+    mark(r, PASS_LIGHTING, info);
+    return ok;
+}
+
+static void describe_lights(const struct render_scene *s, const struct render_settings *settings, struct frame_info *info)
+{
+    for (size_t i = 0; i < settings->light_count; i++) {
+        info->shadow_bytes += light_state_bytes(s->current[i]);
+        info->map_count_total += s->current[i]->fit.map_count;
+    }
+    if (settings->light_count == 0)
+        return;
+    const struct shadow_fit *fit = &s->current[0]->fit;
+    info->map_count = fit->map_count;
+    info->map_size = fit->map_count ? fit->maps[0].width : 0;
+    memcpy(info->map_fov_deg, fit->fov_deg, sizeof info->map_fov_deg);
+}
+
+bool frame_render(struct renderer *r, struct render_scene *s, const struct render_settings *settings, struct frame_info *info,
+                  struct error *err)
+{
+    unsigned aa_side = settings->aa == 16 ? 4 : settings->aa == 4 ? 2 : 1;
+    struct view view = view_from_camera(&settings->camera, settings->width * aa_side, settings->height * aa_side);
+    struct shadow_input inputs[RENDERER_LIGHTS_MAX];
+    gl_timer_begin(&r->timer, settings->finish_each_pass);
+    bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, (unsigned)settings->light_count, err) &&
+              run_camera(r, s, settings, info, err) && prepare_lights(r, s, settings, inputs, info, err) &&
+              resolve_lights(r, s, settings, inputs, info, err) && run_lighting(r, s, settings, aa_side, info, err);
+    if (ok)
+        describe_lights(s, settings, info);
+    return ok;
+}

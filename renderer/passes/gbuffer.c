@@ -1,0 +1,93 @@
+#include "passes/gbuffer.h"
+
+#include <epoxy/gl.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "blocks.h"
+#include "draw/draw_scene.h"
+#include "gl/context.h"
+
+static void put(vec4 out, struct dvec3 v, double w)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+    out[3] = (float)w;
+}
+
+static uint32_t search_steps(size_t count)
+{
+    uint32_t steps = 0;
+    while (((size_t)1 << steps) < count)
+        steps++;
+    return steps;
+}
+
+static bool upload_view(struct gbuffer *g, struct draw_scene *scene, unsigned light_count, struct error *err)
+{
+    const struct view *v = &g->view.view;
+    struct dvec3 o, d, ox, dx, oy, dy;
+    view_ray(v, 0.5, 0.5, &o, &d);
+    view_ray(v, 0.5 + v->width, 0.5, &ox, &dx);
+    view_ray(v, 0.5, 0.5 + v->height, &oy, &dy);
+    double w = 1.0 / v->width, h = 1.0 / v->height;
+    struct view_block block = {0};
+    put(block.ray_origin, dvec3_sub(o, v->eye), 0);
+    put(block.ray_origin_dx, dvec3_scale(dvec3_sub(ox, o), w), 0);
+    put(block.ray_origin_dy, dvec3_scale(dvec3_sub(oy, o), h), 0);
+    put(block.ray_direction, d, 0);
+    put(block.ray_direction_dx, dvec3_scale(dvec3_sub(dx, d), w), 0);
+    put(block.ray_direction_dy, dvec3_scale(dvec3_sub(dy, d), h), 0);
+    put(block.view_forward, v->forward, (v->top - v->bottom) * h);
+    put(block.view_clip, dvec3(v->near, isinf(v->far) ? 0 : v->far, v->orthographic), 0);
+    uvec4 counts = {(uint32_t)scene->scene->instance_count, search_steps(scene->scene->instance_count), light_count, 0};
+    memcpy(block.view_counts, counts, sizeof counts);
+    return gl_buffer_set(&g->view_block, scene->gl, &block, sizeof block, 0, err);
+}
+
+bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, unsigned light_count, struct error *err)
+{
+    return gl_texture_size(&g->ids, scene->gl, GL_R32UI, view->width, view->height, err) &&
+           gl_texture_size(&g->receivers, scene->gl, GL_RGBA32F, view->width, view->height, err) &&
+           draw_view_set(&g->view, scene, view, err) && upload_view(g, scene, light_count, err);
+}
+
+void gbuffer_finish(struct gbuffer *g)
+{
+    draw_view_finish(&g->view);
+    gl_buffer_finish(&g->view_block);
+    gl_texture_finish(&g->ids);
+    gl_texture_finish(&g->receivers);
+    gl_texture_finish(&g->depth);
+    gl_target_finish(&g->target);
+    free(g->cpu_ids);
+    free(g->cpu_receivers);
+    memset(g, 0, sizeof *g);
+}
+
+void gbuffer_bind(const struct gbuffer *g, const struct draw_scene *scene)
+{
+    draw_scene_bind(scene);
+    gl_buffer_bind_texture(&g->view.rows, UNIT_ROWS);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, g->view_block.id);
+    gl_texture_bind(&g->ids, UNIT_IDS);
+    gl_texture_bind(&g->receivers, UNIT_RECEIVERS);
+}
+
+const uint32_t *gbuffer_read_ids(struct gbuffer *g, struct gl_context *gl, struct error *err)
+{
+    size_t pixels = (size_t)g->ids.width * g->ids.height;
+    if (g->traced)
+        return g->cpu_ids;
+    uint32_t *ids = realloc(g->cpu_ids, pixels * sizeof *ids);
+    if (!ids) {
+        error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture's ids");
+        return NULL;
+    }
+    g->cpu_ids = ids;
+    g->cpu_pixels = 0;
+    glGetTextureImage(g->ids.id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, (GLsizei)(pixels * sizeof *ids), ids);
+    return gl_check(gl, err) ? ids : NULL;
+}

@@ -1,0 +1,120 @@
+#include "passes/lighting.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "blocks.h"
+#include "draw/draw_scene.h"
+#include "gl/context.h"
+#include "gl/program.h"
+#include "passes/gbuffer.h"
+
+_Static_assert(LIGHT_DIRECTIONAL == LIGHT_KIND_DIRECTIONAL && LIGHT_POINT == LIGHT_KIND_POINT && LIGHT_SPOT == LIGHT_KIND_SPOT, "blocks.h");
+
+double lighting_illuminance(const struct scene *scene, const struct light *lights, size_t light_count)
+{
+    struct dvec3 centre = dbox_center(&scene->bounds);
+    double radius = dbox_radius(&scene->bounds), sum = 0;
+    if (dbox_is_empty(&scene->bounds))
+        centre = dvec3(0, 0, 0);
+    for (size_t i = 0; i < light_count; i++) {
+        const struct light *l = &lights[i];
+        double peak = fmax(l->color[0], fmax(l->color[1], l->color[2])) * l->intensity;
+        struct dvec3 v = dvec3_sub(l->position, centre);
+        /* A light inside the scene: not nearer than a tenth of its size. */
+        double d2 = fmax(dvec3_dot(v, v), 0.01 * radius * radius);
+        sum += l->kind == LIGHT_DIRECTIONAL ? peak : d2 > 0 ? peak / d2 : 0;
+    }
+    return sum;
+}
+
+static void put(vec4 out, struct dvec3 v, double w)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+    out[3] = (float)w;
+}
+
+/* KHR_lights_punctual, "Inner and Outer Cone Angles". */
+static void put_cone(vec4 out, const struct light *l)
+{
+    double scale = 1 / fmax(0.001, cos(l->inner) - cos(l->outer));
+    put(out, dvec3(scale, -cos(l->outer) * scale, 0), 0);
+}
+
+static bool upload_block(struct lighting *out, const struct lighting_input *in, struct error *err)
+{
+    struct lights_block block = {0};
+    struct dvec3 eye = in->gbuffer->view.view.eye;
+    for (size_t i = 0; i < in->light_count; i++) {
+        const struct light *l = &in->lights[i];
+        put(block.lights_position[i], dvec3_sub(l->position, eye), l->kind);
+        put(block.lights_direction[i], l->direction, l->kind == LIGHT_DIRECTIONAL ? 0 : l->range);
+        put(block.lights_color[i], dvec3_scale(dvec3_from_float(l->color), l->intensity), 0);
+        put_cone(block.lights_cone[i], l);
+    }
+    double unit = dbox_radius(&in->scene->scene->bounds);
+    put(block.picture, dvec3(in->exposure, in->ambient, in->aa_side), unit > 0 ? unit : 1);
+    /* A neutral dark grey behind everything. */
+    put(block.background, dvec3(0.012, 0.013, 0.015), 0);
+    return gl_buffer_set(&out->block, in->scene->gl, &block, sizeof block, 0, err);
+}
+
+static struct gl_program *lighting_program(const struct lighting_input *in, struct error *err)
+{
+    char defines[160];
+    const struct scene *s = in->scene->scene;
+    snprintf(defines, sizeof defines, "SHOW %d\nDISPLAY %d\n%s%s%s", in->show, in->display,
+             in->aa_side > 1 ? "RESOLVE_LATER\n" : "", s->texture_count ? "TEXTURES\n" : "", s->color_count ? "COLORS\n" : "");
+    return gl_programs_get(in->scene->gl->programs, "full_screen.vert", "lighting.frag", defines, err);
+}
+
+static bool downsample(struct lighting *l, const struct lighting_input *in, struct error *err)
+{
+    char defines[32];
+    snprintf(defines, sizeof defines, "DISPLAY %d\n", in->display);
+    struct gl_program *program = gl_programs_get(in->scene->gl->programs, "full_screen.vert", "downsample.frag", defines, err);
+    if (!program)
+        return false;
+    gl_target_attach(&l->target, &l->result, NULL, 0);
+    gl_target_bind(&l->target, l->result.width, l->result.height);
+    gl_program_use(program);
+    gl_texture_bind(&l->samples, UNIT_PICTURE);
+    gl_draw_full_screen();
+    return true;
+}
+
+bool lighting_run(struct lighting *l, const struct lighting_input *in, struct error *err)
+{
+    struct gl_context *gl = in->scene->gl;
+    uint32_t width = in->gbuffer->ids.width, height = in->gbuffer->ids.height;
+    bool many = in->aa_side > 1;
+    GLenum format = in->display == LIGHTING_LINEAR ? GL_RGBA32F : GL_RGBA8;
+    if (!gl_texture_size(&l->result, gl, format, width / in->aa_side, height / in->aa_side, err) ||
+        (many && !gl_texture_size(&l->samples, gl, GL_RGBA16F, width, height, err)) || !upload_block(l, in, err))
+        return false;
+    struct gl_program *program = lighting_program(in, err);
+    if (!program)
+        return false;
+    gl_target_attach(&l->target, many ? &l->samples : &l->result, NULL, 0);
+    gl_target_bind(&l->target, width, height);
+    gl_program_use(program);
+    glBindVertexArray(in->scene->vertex_array);
+    gbuffer_bind(in->gbuffer, in->scene);
+    gl_texture_bind(in->visibility, UNIT_VISIBILITY);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 5, l->block.id);
+    gl_draw_full_screen();
+    return (!many || downsample(l, in, err)) && gl_check(gl, err);
+}
+
+void lighting_finish(struct lighting *l)
+{
+    gl_buffer_finish(&l->block);
+    gl_texture_finish(&l->samples);
+    gl_texture_finish(&l->result);
+    gl_target_finish(&l->target);
+    memset(l, 0, sizeof *l);
+}

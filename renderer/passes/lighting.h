@@ -1,0 +1,44 @@
+/* The last passes: light times visibility, summed over the lights; tone map; the mean over samples. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "gl/buffer.h"
+#include "gl/texture.h"
+#include "scene/scene.h"
+
+struct draw_scene;
+struct error;
+struct gbuffer;
+
+/* As in renderer.h (checked there). */
+enum lighting_show { LIGHTING_SHADED, LIGHTING_VISIBILITY, LIGHTING_DEPTH, LIGHTING_NORMAL, LIGHTING_ID };
+enum lighting_display { LIGHTING_LINEAR, LIGHTING_SRGB, LIGHTING_ACES };
+
+struct lighting_input {
+    struct draw_scene *scene;
+    const struct gbuffer *gbuffer;
+    const struct gl_texture *visibility; /* a layer a light */
+    const struct light *lights;
+    size_t light_count;
+    enum lighting_show show;
+    enum lighting_display display;
+    double exposure;   /* picture = radiance * exposure */
+    double ambient;    /* radiance reflected by white */
+    unsigned aa_side;  /* samples a side: 1, 2, 4; the gbuffer is that much larger than the result */
+};
+
+struct lighting {
+    struct gl_buffer block;
+    struct gl_texture samples; /* RGBA16F at the gbuffer's size; aa_side > 1 only */
+    struct gl_texture result;
+    struct gl_target target;   /* bound, with `result`, when lighting_run() returns */
+};
+
+/* Writes `result`: RGBA32F if display is linear, else RGBA8. */
+bool lighting_run(struct lighting *l, const struct lighting_input *in, struct error *err);
+void lighting_finish(struct lighting *l);
+
+/* Illuminance at the scene's centre, all lights facing it (lux): what auto exposure and ambient light go by. */
+double lighting_illuminance(const struct scene *scene, const struct light *lights, size_t light_count);

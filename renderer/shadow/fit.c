@@ -1,0 +1,306 @@
+#include "shadow/fit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* One map serves up to this half angle (contract: all casters within 120 degrees). */
+#define HALF_ANGLE_MAX (M_PI / 3)
+/* Room around a fit, so that a vertex on the border is inside after rounding: a fraction of the extent. */
+#define MARGIN 1e-4
+/* Nearest depth of a map against its farthest, when casters come arbitrarily near the light. */
+#define NEAR_RATIO 1e-6
+
+/* Calls visit for the corners of every box of every caster, scene space. */
+static void for_corners(const struct fit_geometry *g, const uint32_t *casters, size_t count,
+                        void (*visit)(void *context, struct dvec3 p), void *context)
+{
+    for (size_t k = 0; k < count; k++) {
+        const struct instance *instance = &g->scene->instances[casters[k]];
+        for (size_t b = g->first_box[instance->mesh]; b < g->first_box[instance->mesh + 1]; b++) {
+            const struct fit_box *box = &g->boxes[b];
+            for (int c = 0; c < 8; c++)
+                visit(context, affine_point(&instance->to_scene, dvec3(c & 1 ? box->max[0] : box->min[0], c & 2 ? box->max[1] : box->min[1],
+                                                                      c & 4 ? box->max[2] : box->min[2])));
+        }
+    }
+}
+
+static bool casts(const struct instance *instance, const struct light *light)
+{
+    if (dbox_is_empty(&instance->bounds))
+        return false;
+    if (instance->others_side == 0)
+        return true;
+    if (instance->others_side == 2)
+        return false;
+    double side = light->kind == LIGHT_DIRECTIONAL
+                      ? -dvec3_dot(instance->plane_normal, light->direction)
+                      : dvec3_dot(instance->plane_normal, dvec3_sub(light->position, instance->plane_point));
+    return side * instance->others_side <= 0;
+}
+
+/* False only if the box lies outside the cone for certain: its bounding sphere against the cone. */
+static bool touches_cone(const struct dbox *box, const struct light *l)
+{
+    struct dvec3 v = dvec3_sub(dbox_center(box), l->position);
+    double distance = dvec3_length(v), radius = dbox_radius(box);
+    if (distance <= radius)
+        return true;
+    double angle = acos(fmax(-1, fmin(1, dvec3_dot(v, l->direction) / distance)));
+    return angle <= l->outer + asin(radius / distance);
+}
+
+static bool in_range(const struct dbox *box, const struct light *l)
+{
+    return l->range == 0 || dvec3_length(dvec3_sub(dbox_center(box), l->position)) <= l->range + dbox_radius(box);
+}
+
+static size_t find_casters(const struct scene *scene, const struct light *light, uint32_t *out)
+{
+    size_t n = 0;
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        if (!casts(instance, light))
+            continue;
+        if (light->kind != LIGHT_DIRECTIONAL && !in_range(&instance->bounds, light))
+            continue;
+        if (light->kind == LIGHT_SPOT && !touches_cone(&instance->bounds, light))
+            continue;
+        out[n++] = i;
+    }
+    return n;
+}
+
+/* Axes that look along `forward`. Up is scene Y where that is possible. */
+static void look_along(struct view *v, struct dvec3 forward)
+{
+    struct dvec3 up = fabs(forward.y) < 0.99 ? dvec3(0, 1, 0) : dvec3(0, 0, -1);
+    v->forward = forward;
+    v->right = dvec3_normalize(dvec3_cross(forward, up));
+    v->up = dvec3_cross(v->right, v->forward);
+}
+
+struct extents {
+    const struct view *view;
+    double min_x, max_x, min_y, max_y, min_z, max_z;
+    double widest; /* largest angle to the axis, radians (perspective) */
+};
+
+static struct extents no_extents(const struct view *v)
+{
+    return (struct extents){v, INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, -INFINITY, 0};
+}
+
+static void extend(void *context, struct dvec3 p)
+{
+    struct extents *e = context;
+    struct dvec3 d = dvec3_sub(p, e->view->eye);
+    double x = dvec3_dot(d, e->view->right), y = dvec3_dot(d, e->view->up), z = dvec3_dot(d, e->view->forward);
+    if (!e->view->orthographic) {
+        e->widest = fmax(e->widest, atan2(hypot(x, y), z));
+        if (z > 0) {
+            x /= z;
+            y /= z;
+        }
+    }
+    e->min_x = fmin(e->min_x, x);
+    e->max_x = fmax(e->max_x, x);
+    e->min_y = fmin(e->min_y, y);
+    e->max_y = fmax(e->max_y, y);
+    e->min_z = fmin(e->min_z, z);
+    e->max_z = fmax(e->max_z, z);
+}
+
+static void set_picture(struct view *v, const struct extents *e)
+{
+    double mx = MARGIN * (e->max_x - e->min_x) + 1e-12, my = MARGIN * (e->max_y - e->min_y) + 1e-12;
+    v->left = e->min_x - mx;
+    v->right_edge = e->max_x + mx;
+    v->bottom = e->min_y - my;
+    v->top = e->max_y + my;
+}
+
+static void set_depths(struct view *v, double nearest, double farthest)
+{
+    v->far = INFINITY;
+    v->near = fmax(nearest * (1 - MARGIN), farthest * NEAR_RATIO);
+    if (!(v->near > 0))
+        v->near = 1e-12;
+}
+
+static void fit_directional(const struct fit_geometry *g, const struct light *light, bool cube, struct shadow_fit *out)
+{
+    struct view *v = &out->maps[0];
+    v->orthographic = true;
+    v->eye = dbox_center(&g->scene->bounds);
+    look_along(v, light->direction);
+    struct extents e = no_extents(v);
+    for_corners(g, out->casters, out->caster_count, extend, &e);
+    if (cube) {
+        double r = dbox_radius(&g->scene->bounds);
+        e.min_x = e.min_y = -r;
+        e.max_x = e.max_y = r;
+    }
+    double mz = MARGIN * (e.max_z - e.min_z) + 1e-9 * fmax(fabs(e.min_z), fabs(e.max_z)) + 1e-12;
+    set_picture(v, &e);
+    v->near = e.min_z - mz;
+    v->far = e.max_z + mz;
+    out->map_count = 1;
+}
+
+struct direction_sum {
+    struct dvec3 eye, sum;
+    double worst;          /* cosine to `axis` */
+    struct dvec3 axis, farthest;
+};
+
+static void find_farthest(void *context, struct dvec3 p)
+{
+    struct direction_sum *s = context;
+    struct dvec3 d = dvec3_normalize(dvec3_sub(p, s->eye));
+    double c = dvec3_dot(d, s->axis);
+    if (c < s->worst) {
+        s->worst = c;
+        s->farthest = d;
+    }
+}
+
+/* Axis of a small cone around all corners: Badoiu and Clarkson 2003's step towards the farthest, on the unit sphere. */
+static struct dvec3 cone_axis(const struct fit_geometry *g, const struct shadow_fit *fit, struct dvec3 eye, struct dvec3 first)
+{
+    struct direction_sum s = {.eye = eye, .axis = first};
+    for (int step = 1; step <= 12; step++) {
+        s.worst = 2;
+        for_corners(g, fit->casters, fit->caster_count, find_farthest, &s);
+        s.axis = dvec3_normalize(dvec3_mad(s.axis, dvec3_sub(s.farthest, s.axis), 1.0 / (step + 1)));
+    }
+    return s.axis;
+}
+
+static bool cone_within_limit(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out, struct dvec3 axis,
+                              struct extents *e)
+{
+    struct view *v = &out->maps[0];
+    v->eye = light->position;
+    look_along(v, axis);
+    *e = no_extents(v);
+    for_corners(g, out->casters, out->caster_count, extend, e);
+    return e->widest <= HALF_ANGLE_MAX;
+}
+
+static double full_angle(const struct view *v)
+{
+    double x = atan(v->right_edge) - atan(v->left), y = atan(v->top) - atan(v->bottom);
+    return fmax(x, y) * 180 / M_PI;
+}
+
+static void finish_perspective(struct shadow_fit *out, const struct extents *e)
+{
+    set_picture(&out->maps[0], e);
+    set_depths(&out->maps[0], e->min_z, e->max_z);
+    out->fov_deg[0] = full_angle(&out->maps[0]);
+    out->map_count = 1;
+}
+
+/* A spot's casters reach beyond its cone: only the part inside counts, so the picture is the meeting of both. */
+static bool fit_spot(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out)
+{
+    if (light->outer > HALF_ANGLE_MAX)
+        return false;
+    struct extents e;
+    cone_within_limit(g, light, out, light->direction, &e);
+    double t = tan(light->outer);
+    bool behind = e.min_z <= 0;
+    e.min_x = behind ? -t : fmax(e.min_x, -t);
+    e.max_x = behind ? t : fmin(e.max_x, t);
+    e.min_y = behind ? -t : fmax(e.min_y, -t);
+    e.max_y = behind ? t : fmin(e.max_y, t);
+    if (e.min_x >= e.max_x || e.min_y >= e.max_y || e.max_z <= 0) {
+        out->map_count = 0;
+        return true;
+    }
+    finish_perspective(out, &e);
+    return true;
+}
+
+static bool fit_one_perspective(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out)
+{
+    struct extents e;
+    struct dvec3 first = dvec3_normalize(dvec3_sub(dbox_center(&g->scene->instances[out->casters[0]].bounds), light->position));
+    if (dvec3_dot(first, first) == 0)
+        first = dvec3(0, -1, 0);
+    if (!cone_within_limit(g, light, out, cone_axis(g, out, light->position, first), &e))
+        return false;
+    finish_perspective(out, &e);
+    return true;
+}
+
+struct face_use {
+    const struct view *view;
+    double nearest, farthest;
+    bool outside[4]; /* all corners beyond the plane */
+    bool behind;
+};
+
+static void use_face(void *context, struct dvec3 p)
+{
+    struct face_use *u = context;
+    struct dvec3 d = dvec3_sub(p, u->view->eye);
+    double x = dvec3_dot(d, u->view->right), y = dvec3_dot(d, u->view->up), z = dvec3_dot(d, u->view->forward);
+    u->outside[0] &= x < -z;
+    u->outside[1] &= x > z;
+    u->outside[2] &= y < -z;
+    u->outside[3] &= y > z;
+    u->behind &= z < 0;
+    u->nearest = fmin(u->nearest, z);
+    u->farthest = fmax(u->farthest, z);
+}
+
+/* Caster by caster: one that lies wholly beyond a side plane is not in the face. */
+static bool face_holds_casters(const struct fit_geometry *g, const struct shadow_fit *out, struct view *v)
+{
+    bool any = false;
+    double farthest = 0, nearest = INFINITY;
+    for (size_t k = 0; k < out->caster_count; k++) {
+        struct face_use u = {v, INFINITY, -INFINITY, {true, true, true, true}, true};
+        for_corners(g, out->casters + k, 1, use_face, &u);
+        if (u.outside[0] || u.outside[1] || u.outside[2] || u.outside[3] || u.behind)
+            continue;
+        any = true;
+        farthest = fmax(farthest, u.farthest);
+        nearest = fmin(nearest, u.nearest);
+    }
+    if (any)
+        set_depths(v, fmax(nearest, 0), farthest);
+    return any;
+}
+
+static void fit_cube_faces(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out)
+{
+    static const double axes[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    out->map_count = 0;
+    for (int face = 0; face < 6; face++) {
+        struct view *v = &out->maps[out->map_count];
+        uint32_t size = v->width;
+        *v = (struct view){.width = size, .height = size, .eye = light->position, .left = -1, .right_edge = 1, .bottom = -1, .top = 1};
+        look_along(v, dvec3(axes[face][0], axes[face][1], axes[face][2]));
+        if (face_holds_casters(g, out, v))
+            out->fov_deg[out->map_count++] = 90;
+    }
+}
+
+void shadow_fit_compute(const struct fit_geometry *g, const struct light *light, uint32_t size, bool cube, uint32_t *casters,
+                        struct shadow_fit *out)
+{
+    memset(out, 0, sizeof *out);
+    for (int i = 0; i < SHADOW_MAPS_MAX; i++)
+        out->maps[i].width = out->maps[i].height = size;
+    out->casters = casters;
+    out->caster_count = find_casters(g->scene, light, casters);
+    if (out->caster_count == 0)
+        return;
+    if (light->kind == LIGHT_DIRECTIONAL)
+        fit_directional(g, light, cube, out);
+    else if (cube || !(light->kind == LIGHT_SPOT ? fit_spot(g, light, out) : fit_one_perspective(g, light, out)))
+        fit_cube_faces(g, light, out);
+}

@@ -1,0 +1,27 @@
+/* A light's depth maps: the tool that every system built on plain depth shares. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "draw/draw_view.h"
+#include "gl/buffer.h"
+#include "gl/texture.h"
+#include "shadow/shadow.h"
+
+struct light_maps {
+    struct gl_texture depth;   /* D32F array, a layer a map; encoding: shaders/maps.glsl */
+    struct gl_target target;
+    struct draw_view draw;
+    struct gl_buffer block;    /* maps_block, relative to the camera of the last bind */
+    struct shadow_fit fit;     /* as rendered; casters not kept */
+};
+
+/* Renders all maps of in->fit. */
+bool light_maps_render(struct light_maps *m, const struct shadow_input *in, struct error *err);
+
+/* Makes them what shaders/maps.glsl reads, relative to in->view. */
+bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct error *err);
+
+size_t light_maps_bytes(const struct light_maps *m);
+void light_maps_finish(struct light_maps *m);

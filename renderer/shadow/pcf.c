@@ -1,0 +1,38 @@
+/* Percentage-closer filtering: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps". */
+#include "shadow/light_maps.h"
+#include "shadow/shared_params.h"
+
+static const struct param_desc params[] = {
+    SHADOW_MAP_PARAMS,
+    SHADOW_BIAS_PARAMS,
+    {.name = "kernel", .unit = "texels", .help = "Side of the square of texels that are compared.", .kind = PARAM_INT, .min = 1,
+     .max = 31, .initial = 5, .odd = true},
+};
+
+static bool prepare(void *state, const struct shadow_input *in, struct error *err)
+{
+    return light_maps_render(state, in, err);
+}
+
+static bool resolve(void *state, const struct shadow_input *in, struct error *err)
+{
+    return light_maps_bind(state, in, err) && shadow_run_full_screen(in, "pcf.frag", NULL, err);
+}
+
+static void finish(void *state) { light_maps_finish(state); }
+static size_t bytes(const void *state) { return light_maps_bytes(state); }
+
+const struct shadow_system shadow_pcf = {
+    .name = "pcf",
+    .title = "Percentage-closer filtering",
+    .help = "Depth map; the share of neighbouring texels that see the point.",
+    .lights = 1 << LIGHT_DIRECTIONAL | 1 << LIGHT_POINT | 1 << LIGHT_SPOT,
+    .flags = SHADOW_USES_MAPS,
+    .params = params,
+    .param_count = sizeof params / sizeof *params,
+    .state_size = sizeof(struct light_maps),
+    .prepare = prepare,
+    .resolve = resolve,
+    .finish = finish,
+    .bytes = bytes,
+};

@@ -1,0 +1,33 @@
+/* Shadow map: Williams 1978, "Casting curved shadows on curved surfaces". */
+#include "shadow/light_maps.h"
+#include "shadow/shared_params.h"
+
+static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS};
+
+static bool prepare(void *state, const struct shadow_input *in, struct error *err)
+{
+    return light_maps_render(state, in, err);
+}
+
+static bool resolve(void *state, const struct shadow_input *in, struct error *err)
+{
+    return light_maps_bind(state, in, err) && shadow_run_full_screen(in, "sm.frag", NULL, err);
+}
+
+static void finish(void *state) { light_maps_finish(state); }
+static size_t bytes(const void *state) { return light_maps_bytes(state); }
+
+const struct shadow_system shadow_sm = {
+    .name = "sm",
+    .title = "Shadow map",
+    .help = "Depth map from the light; one comparison a pixel.",
+    .lights = 1 << LIGHT_DIRECTIONAL | 1 << LIGHT_POINT | 1 << LIGHT_SPOT,
+    .flags = SHADOW_USES_MAPS | SHADOW_BINARY,
+    .params = params,
+    .param_count = sizeof params / sizeof *params,
+    .state_size = sizeof(struct light_maps),
+    .prepare = prepare,
+    .resolve = resolve,
+    .finish = finish,
+    .bytes = bytes,
+};

@@ -1,0 +1,104 @@
+/* Bindings and uniform blocks, compiled by C and by GLSL: the one place where the two sides agree.
+ *
+ * "Relative" = scene space minus the eye of the view at hand, subtracted in double on the CPU; so single precision serves however
+ * far out the scene lies. Pictures have row 0 at the top. */
+#ifndef BLOCKS_H
+#define BLOCKS_H
+
+#ifdef GL_core_profile
+#define BLOCK(name, slot) layout(std140, binding = slot) uniform name
+#else
+#include <cglm/cglm.h>
+#include <stdint.h>
+typedef uint32_t uvec4[4];
+#define BLOCK(name, slot) struct name
+#endif
+
+/* Texture units. */
+#define UNIT_VERTICES 0       /* RGBA32UI: position (float bits), normal (two snorm16, octahedral) */
+#define UNIT_TRIANGLES 1      /* RGBA32UI: three vertex indices, unused */
+#define UNIT_INSTANCES 2      /* RGBA32UI: first drawn triangle, first row of UNIT_TRIANGLES, material, INSTANCE_ flags */
+#define UNIT_ROWS 3           /* RGBA32F, 3 an instance: rows of relative-from-mesh */
+#define UNIT_TEXCOORDS 4      /* RGBA32F a vertex: sets 0 and 1 */
+#define UNIT_COLORS 5         /* RGBA32F a vertex */
+#define UNIT_MATERIALS 6      /* RGBA32F, MATERIAL_TEXELS each */
+#define UNIT_TEXTURES 7       /* RGBA32UI: first texel, width | height << 16, wrap_s | wrap_t << 8 | nearest << 16, levels */
+#define UNIT_TEXELS 8         /* R32UI: RGBA8, level after level */
+#define UNIT_IDS 9            /* R32UI: drawn triangle id, NO_TRIANGLE: background */
+#define UNIT_RECEIVERS 10     /* RGBA32F: unit geometric normal turned to the eye, depth along the view's axis (0: background) */
+#define UNIT_VISIBILITY 11    /* R32F array, a layer a light */
+#define UNIT_SHADOW_MAP 12    /* D32F array, a layer a map */
+#define UNIT_PICTURE 13       /* RGBA32F: picture before the last step */
+
+#define NO_TRIANGLE 0xffffffffu
+#define INSTANCE_MIRRORED 1u
+
+#define LIGHTS_MAX 16
+#define MAPS_MAX 6
+
+/* A material: base colour; metallic (-1: unlit), roughness, normal scale, occlusion strength; emissive, alpha cutoff (-1: no holes); then
+ * for each texture use (MATERIAL_BASE_COLOR ...): index (-1: none), set, transform[0][2], transform[1][2]; transform[0..1][0..1]. */
+#define MATERIAL_TEXELS 13
+#define MATERIAL_BASE_COLOR 3
+#define MATERIAL_METALLIC_ROUGHNESS 5
+#define MATERIAL_NORMAL 7
+#define MATERIAL_OCCLUSION 9
+#define MATERIAL_EMISSIVE 11
+
+#define LIGHT_KIND_DIRECTIONAL 0
+#define LIGHT_KIND_POINT 1
+#define LIGHT_KIND_SPOT 2
+
+/* The camera: the ray through the centre of pixel (x, y) is origin + t * direction, both affine in x and y; t is the depth. */
+BLOCK(view_block, 0)
+{
+    vec4 ray_origin, ray_origin_dx, ray_origin_dy; /* xyz, relative; zero in perspective */
+    vec4 ray_direction, ray_direction_dx, ray_direction_dy;
+    vec4 view_forward; /* w: size of a pixel at depth 1 (perspective) or anywhere (orthographic) */
+    vec4 view_clip;    /* near, far (0: none), 1 if orthographic, unused */
+    uvec4 view_counts; /* instances, steps of a search among them, light count, unused */
+};
+
+/* What the rasterizer draws from: a camera's or a light map's view. */
+BLOCK(draw_block, 1)
+{
+    mat4 clip_from_relative;
+    vec4 draw_far; /* x: depth beyond which nothing is drawn, 0: no limit; yzw: view axis */
+};
+
+/* The light being resolved. */
+BLOCK(light_block, 2)
+{
+    vec4 light_position;  /* relative; w: LIGHT_KIND_ */
+    vec4 light_direction; /* the way it travels, unit; w: range, 0: none */
+    vec4 light_cone;      /* cosine of the outer angle; unused */
+};
+
+/* Its maps. Map coordinates of relative point p: q = (dot(row[0], p1), dot(row[1], p1), dot(row[2], p1)), p1 = (p, 1); texel = q.xy / w *
+ * scale.xy + scale.zw with w = q.z (perspective) or 1; q.z is the depth along the map's axis. */
+BLOCK(maps_block, 3)
+{
+    vec4 map_rows[3 * MAPS_MAX];
+    vec4 map_scale[MAPS_MAX];
+    vec4 map_depth[MAPS_MAX]; /* near, far, 1 if orthographic, world size of a texel (at depth 1 if perspective) */
+    uvec4 map_counts;         /* maps, side in texels, unused, unused */
+};
+
+/* The parameters of the shadow system at work, in the order of its descriptors. */
+BLOCK(params_block, 4)
+{
+    vec4 params[4];
+};
+
+/* All lights, for shading. */
+BLOCK(lights_block, 5)
+{
+    vec4 lights_position[LIGHTS_MAX];  /* relative; w: LIGHT_KIND_ */
+    vec4 lights_direction[LIGHTS_MAX]; /* unit; w: range, 0: none */
+    vec4 lights_color[LIGHTS_MAX];     /* colour times intensity */
+    vec4 lights_cone[LIGHTS_MAX];      /* KHR_lights_punctual: angular scale, angular offset */
+    vec4 picture;                      /* exposure factor, ambient radiance, samples a side (aa), unused */
+    vec4 background;                   /* linear, as shown */
+};
+
+#endif

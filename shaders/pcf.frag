@@ -1,0 +1,27 @@
+/* Reeves, Salesin, Cook 1987: the share of n x n neighbouring texels that see the point. */
+#include "maps.glsl"
+#include "params.glsl"
+
+layout(location = 0) out float visibility;
+
+const int BIAS = 2, SLOPE = 3, KERNEL = 4;
+
+void main()
+{
+    Receiver r;
+    visibility = 0.0;
+    if (receiver_at(ivec2(gl_FragCoord.xy), r)) {
+        MapPoint m = map_point(r.point);
+        if (m.layer < 0) {
+            visibility = 1.0;
+        } else {
+            float bias = map_bias(r, m, PARAM(BIAS), PARAM(SLOPE));
+            int kernel = int(PARAM(KERNEL)), reach = kernel / 2, last = int(map_counts.y) - 1;
+            float sum = 0.0;
+            for (int y = -reach; y <= reach; y++)
+                for (int x = -reach; x <= reach; x++)
+                    sum += map_lit(m, clamp(ivec2(m.texel) + ivec2(x, y), ivec2(0), ivec2(last)), bias);
+            visibility = sum / float(kernel * kernel);
+        }
+    }
+}
