@@ -1,11 +1,12 @@
 #include "progress.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
 
 static const double SHOW_AFTER_S = 1.0; /* shorter work shows nothing */
-static const double REDRAW_S = 0.1;
+static const double REDRAW_S = 0.2;
 enum { BAR_WIDTH = 40 };
 
 static double now(void)
@@ -15,48 +16,80 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void progress_init(struct progress *p, const char *what, bool quiet)
-{
-    *p = (struct progress){.what = what, .enabled = !quiet && isatty(STDERR_FILENO), .started = now()};
-    pthread_mutex_init(&p->mutex, NULL);
-}
-
-static void draw(const struct progress *p, double done)
+static void draw(const struct progress *p)
 {
     char bar[BAR_WIDTH + 1];
-    for (int i = 0; i < BAR_WIDTH; i++)
-        bar[i] = i < (int)(done * BAR_WIDTH + 0.5) ? '=' : ' ';
-    bar[BAR_WIDTH] = 0;
-    fprintf(stderr, "\r%s [%s] %3d %%\033[K", p->what, bar, (int)(done * 100 + 0.5));
+    if (p->done < 0) {
+        fprintf(stderr, "\r%s ... %.0f s\033[K", p->what, floor(now() - p->started));
+    } else {
+        for (int i = 0; i < BAR_WIDTH; i++)
+            bar[i] = i < (int)(p->done * BAR_WIDTH + 0.5) ? '=' : ' ';
+        bar[BAR_WIDTH] = 0;
+        fprintf(stderr, "\r%s [%s] %3.0f %%\033[K", p->what, bar, floor(p->done * 100));
+    }
     fflush(stderr);
+}
+
+static struct timespec at(double seconds)
+{
+    return (struct timespec){.tv_sec = (time_t)seconds, .tv_nsec = (long)((seconds - floor(seconds)) * 1e9)};
+}
+
+static void *redraw(void *context)
+{
+    struct progress *p = context;
+    double next = p->started + SHOW_AFTER_S;
+    pthread_mutex_lock(&p->mutex);
+    while (!p->finished) {
+        struct timespec wake = at(next);
+        pthread_cond_timedwait(&p->changed, &p->mutex, &wake);
+        if (p->finished || now() < next)
+            continue;
+        draw(p);
+        p->drawn = true;
+        next = now() + REDRAW_S;
+    }
+    pthread_mutex_unlock(&p->mutex);
+    return NULL;
+}
+
+void progress_init(struct progress *p, const char *what, bool quiet)
+{
+    pthread_condattr_t monotonic;
+    *p = (struct progress){.what = what, .done = -1, .started = now()};
+    if (quiet || !isatty(STDERR_FILENO))
+        return;
+    pthread_mutex_init(&p->mutex, NULL);
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&p->changed, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    p->enabled = pthread_create(&p->thread, NULL, redraw, p) == 0;
 }
 
 void progress_set(struct progress *p, double done)
 {
     if (!p->enabled)
         return;
-    done = done < 0 ? 0 : done > 1 ? 1 : done;
     pthread_mutex_lock(&p->mutex);
-    double t = now();
-    if (t - p->started > SHOW_AFTER_S && t - p->last > REDRAW_S) {
-        p->last = t;
-        p->drawn = true;
-        draw(p, done);
-    }
+    p->done = fmin(fmax(done, 0), 1);
     pthread_mutex_unlock(&p->mutex);
 }
 
 void progress_finish(struct progress *p)
 {
+    if (!p->enabled)
+        return;
+    pthread_mutex_lock(&p->mutex);
+    p->finished = true;
+    pthread_cond_signal(&p->changed);
+    pthread_mutex_unlock(&p->mutex);
+    pthread_join(p->thread, NULL);
     if (p->drawn) {
         fputs("\r\033[K", stderr);
         fflush(stderr);
     }
+    pthread_cond_destroy(&p->changed);
     pthread_mutex_destroy(&p->mutex);
-}
-
-bool progress_report(void *progress, double done)
-{
-    progress_set(progress, done);
-    return true;
+    p->enabled = false;
 }

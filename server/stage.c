@@ -4,10 +4,10 @@
 
 #include "base/job_pool.h"
 #include "common_options.h"
+#include "progress.h"
 
-bool stage_init(struct stage *stage, const char *scene, const struct common_options *options, struct error *err)
+static bool set_up(struct stage *stage, const char *scene, const struct common_options *options, struct error *err)
 {
-    *stage = (struct stage){0};
     stage->scene = scene_load(scene, err);
     if (!stage->scene || !common_options_settings(options, stage->scene, &stage->settings, err))
         return false;
@@ -20,6 +20,16 @@ bool stage_init(struct stage *stage, const char *scene, const struct common_opti
         return false;
     stage->uploaded = render_scene_create(stage->renderer, stage->scene, err);
     return stage->uploaded != NULL;
+}
+
+bool stage_init(struct stage *stage, const char *scene, const struct common_options *options, struct error *err)
+{
+    struct progress progress;
+    *stage = (struct stage){0};
+    progress_init(&progress, "loading", options->quiet);
+    bool good = set_up(stage, scene, options, err);
+    progress_finish(&progress);
+    return good;
 }
 
 void stage_finish(struct stage *stage)

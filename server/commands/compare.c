@@ -177,25 +177,36 @@ static bool time_frames(const struct compare_options *o, struct stage *stage, js
     return *figures || error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for the figures");
 }
 
+/* The table for people, unless standard output carries something else. */
+static bool write_results(const struct compare_options *o, const struct stage *stage, const struct comparison *c,
+                          json_t **figures, struct error *err)
+{
+    if (o->picture && !write_picture(o, stage, c, err))
+        return false;
+    if (o->json) {
+        add_errors(*figures, o, stage, c);
+        json_t *taken = *figures;
+        *figures = NULL;
+        if (!output_json(o->json, taken, err))
+            return false;
+    }
+    if ((o->json && !strcmp(o->json, "-")) || (o->picture && !strcmp(o->picture, "-")))
+        return true;
+    print_table(o, stage, c);
+    return output_flush(err);
+}
+
 static bool compare(const struct compare_options *o, struct stage *stage, struct error *err)
 {
     json_t *figures = NULL;
     struct comparison c = {0};
     struct progress progress;
+    if (o->json && !time_frames(o, stage, &figures, err))
+        return false;
     progress_init(&progress, "comparing", o->common.quiet);
-    bool good = (!o->json || time_frames(o, stage, &figures, err)) && comparison_run(stage, &o->against, &progress, &c, err);
+    bool good = comparison_run(stage, &o->against, &progress, &c, err);
     progress_finish(&progress);
-    good = good && (!o->picture || write_picture(o, stage, &c, err));
-    if (good && o->json) {
-        add_errors(figures, o, stage, &c);
-        good = output_json(o->json, figures, err);
-        figures = NULL;
-    }
-    bool stdout_taken = (o->json && !strcmp(o->json, "-")) || (o->picture && !strcmp(o->picture, "-"));
-    if (good && !stdout_taken) {
-        print_table(o, stage, &c);
-        good = output_flush(err);
-    }
+    good = good && write_results(o, stage, &c, &figures, err);
     json_decref(figures);
     comparison_finish(&c);
     return good;

@@ -104,8 +104,11 @@ static bool write_picture(const struct render_options *o, struct stage *stage, d
 {
     struct frame_info info;
     struct stamp stamp;
+    struct progress progress;
     void *pixels = stage_picture(&stage->settings, err);
+    progress_init(&progress, "rendering", o->common.quiet);
     bool good = pixels && stage_frame(stage, &stage->settings, pixels, &info, err);
+    progress_finish(&progress);
     if (good) {
         *frame_ms = info.frame_ms;
         stamp_fill(&stamp, stage, info.frame_ms);
