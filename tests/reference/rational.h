@@ -1,0 +1,14 @@
+/* The second opinion: docs/truth.md in rational arithmetic, over every triangle for every ray. */
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/view.h"
+
+/* The triangle that picture position (x, y) sees; SCENE_NONE: none. */
+uint32_t rational_visible(const struct scene *scene, const struct view *view, double x, double y);
+
+enum rational_answer { RATIONAL_NO_RECEIVER, RATIONAL_SHADOWED, RATIONAL_LIT };
+
+/* What reaches the point at which the ray through (x, y) meets the plane of drawn triangle `id` (SCENE_NONE: no receiver). */
+enum rational_answer rational_light(const struct scene *scene, const struct view *view, const struct light *light, uint32_t id, double x,
+                                    double y);
