@@ -87,6 +87,24 @@ void ray_frame_packet(const struct ray_frame *f, bool orthographic, double x, do
     }
 }
 
+void ray_frame_samples(const struct ray_frame *f, bool orthographic, double x, double y, const float (*samples)[2],
+                       struct RTCRayHit16 *packet)
+{
+    struct RTCRay16 *r = &packet->ray;
+    struct dvec3 base = orthographic ? f->origin : f->direction, dx = orthographic ? f->origin_x : f->direction_x,
+                 dy = orthographic ? f->origin_y : f->direction_y;
+    struct dvec3 corner = dvec3_mad(dvec3_mad(base, dx, x), dy, y);
+    float *out[3] = {orthographic ? r->org_x : r->dir_x, orthographic ? r->org_y : r->dir_y, orthographic ? r->org_z : r->dir_z};
+    const double c[3] = {corner.x, corner.y, corner.z}, h[3] = {dx.x, dx.y, dx.z}, v[3] = {dy.x, dy.y, dy.z};
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < LANES; i++)
+            out[k][i] = (float)(c[k] + h[k] * (double)samples[i][0] + v[k] * (double)samples[i][1]);
+    for (int i = 0; i < LANES; i++) {
+        r->tfar[i] = f->tfar;
+        packet->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
 void tile_lanes(const struct tile *tile, uint32_t x, uint32_t y, int valid[LANES])
 {
     for (unsigned i = 0; i < LANES; i++)

@@ -29,6 +29,10 @@ void ray_frame_start(const struct ray_frame *f, bool orthographic, struct RTCRay
 /* Sets the packet whose first ray goes through picture position (x, y). */
 void ray_frame_packet(const struct ray_frame *f, bool orthographic, double x, double y, struct RTCRayHit16 *packet);
 
+/* Sets the packet of sixteen `samples` of pixel (x, y). */
+void ray_frame_samples(const struct ray_frame *f, bool orthographic, double x, double y, const float (*samples)[2],
+                       struct RTCRayHit16 *packet);
+
 /* -1 for the lanes of the packet at pixel (x, y) that lie in the tile, else 0. */
 void tile_lanes(const struct tile *tile, uint32_t x, uint32_t y, int valid[LANES]);
 
