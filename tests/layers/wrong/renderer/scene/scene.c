@@ -7,3 +7,4 @@
 
 static pthread_mutex_t lock; /* a lock is no thread */
 void start(void) { pthread_create(0, 0, 0, 0); }
+#include <epoxy/gl.h>
