@@ -13,9 +13,9 @@ layout(binding = UNIT_MATERIALS) uniform samplerBuffer materials;
 layout(binding = UNIT_COLORS) uniform samplerBuffer color_texels;
 #endif
 
-vec3 unpack_normal(uint packed)
+vec3 unpack_normal(uint bits)
 {
-    vec2 e = unpackSnorm2x16(packed);
+    vec2 e = unpackSnorm2x16(bits);
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
     float t = max(-n.z, 0.0);
     n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);

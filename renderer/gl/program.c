@@ -70,7 +70,7 @@ static void log_numbered(const char *source)
     int line = 1;
     for (const char *at = source; *at; line++) {
         size_t length = strcspn(at, "\n");
-        log_error("%4d| %.*s", line, (int)length, at);
+        log_info("%4d| %.*s", line, (int)length, at);
         at += length + (at[length] == '\n');
     }
 }
