@@ -61,6 +61,8 @@ void decode(void *context)
     const char *name = reader_for(d->data, d->size);
     if (!name)
         fail("%s is no PNG, JPEG or WebP image", d->what);
+    if (gltf::image_is_cut({d->data, d->size}))
+        fail("%s is cut short", d->what);
     OIIO::attribute("threads", 1);
     uint64_t width = 0, height = 0;
     if (gltf::find_image_size({d->data, d->size}, &width, &height))

@@ -79,4 +79,20 @@ bool find_image_size(span data, uint64_t *width, uint64_t *height)
     return png_size(data, width, height) || jpeg_size(data, width, height) || webp_size(data, width, height);
 }
 
+/* PNG specification, 5.3: length, type, data, CRC. */
+bool image_is_cut(span d)
+{
+    if (d.size < 8 || memcmp(d.data, "\x89PNG\r\n\x1a\n", 8) != 0)
+        return false;
+    for (size_t at = 8; d.size - at >= 12;) {
+        size_t length = big(d.data + at, 4);
+        if (length > d.size - at - 12)
+            return true;
+        if (memcmp(d.data + at + 4, "IEND", 4) == 0)
+            return false;
+        at += 12 + length;
+    }
+    return true;
+}
+
 } // namespace gltf
