@@ -1,6 +1,7 @@
 /* Procedural scenes that need no file. */
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "scene/scene.h"
@@ -10,6 +11,7 @@ struct error;
 struct builtin_param {
     const char *name, *help;
     double min, max, initial;
+    bool whole; /* only whole numbers are accepted */
 };
 
 struct builtin_desc {
@@ -23,5 +25,5 @@ extern const struct builtin_desc *const builtin_list[];
 extern const size_t builtin_count;
 
 /* `name` without "builtin:", with parameters: "dragon:triangles=100000". The result is finished. Errors (ERROR_USAGE) list
- * what would be accepted. */
+ * what would be accepted. The same name gives the same bits every time. */
 struct scene *builtin_make(const char *name, struct error *err);
