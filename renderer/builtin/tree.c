@@ -59,9 +59,9 @@ static void grow_line(struct tree *t, const struct branch *branch, struct dvec3 
         double root = branch->level == 0 ? 0.9 * exp(-14 * along) : 0; /* the trunk widens at its foot */
         points[i] = p;
         radii[i] = branch->radius * (1 + (level->thinning - 1) * along + root);
+        p = dvec3_mad(p, d, step);
         d = dvec3_mad(d, draw_direction(t), branch->level == 0 ? 0.10 : 0.20);
         d = dvec3_normalize(dvec3_add(d, dvec3(0, branch->level == 0 ? 0.2 : 0.07, 0)));
-        p = dvec3_mad(p, d, step);
     }
 }
 
