@@ -241,6 +241,7 @@ void add_camera(build &b, const tinygltf::Node &node, const struct affine &world
     b.cameras.push(camera);
 }
 
+/* tinygltf has seen to it that the type is one of the two. */
 void check_cameras(const tinygltf::Model &model)
 {
     for (size_t i = 0; i < model.cameras.size(); i++) {
@@ -250,13 +251,11 @@ void check_cameras(const tinygltf::Model &model)
                 fail("cameras[%zu].orthographic: xmag and ymag must not be 0", i);
             if (!(c.orthographic.zfar > c.orthographic.znear))
                 fail("cameras[%zu].orthographic: zfar %g must be greater than znear %g", i, c.orthographic.zfar, c.orthographic.znear);
-        } else if (c.type == "perspective") {
+        } else {
             if (!(c.perspective.yfov > 0) || !(c.perspective.znear > 0))
                 fail("cameras[%zu].perspective: yfov and znear must be greater than 0", i);
             if (c.perspective.zfar > 0 && !(c.perspective.zfar > c.perspective.znear))
                 fail("cameras[%zu].perspective: zfar %g must be greater than znear %g", i, c.perspective.zfar, c.perspective.znear);
-        } else {
-            fail("cameras[%zu].type is \"%.40s\", accepted are perspective and orthographic", i, c.type.c_str());
         }
     }
 }

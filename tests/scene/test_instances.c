@@ -1,6 +1,7 @@
 /* Instances, drawn-triangle ids, bounds, and that where a scene lies in the world changes no bit of it. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,7 @@
 /* material_alpha(): wrap modes, transform, nearest texel, hostile coordinates. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include <cmocka.h>

@@ -1,6 +1,7 @@
 /* Which meshes are planar, and on which side of them the rest lies. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include <cmocka.h>

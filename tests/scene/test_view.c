@@ -1,6 +1,7 @@
 /* view_ray() and view_project() undo each other; the 32 samples. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include <cmocka.h>
