@@ -93,7 +93,11 @@ json_t *listing_devices(const struct device_info *devices, size_t count)
     return array;
 }
 
-json_t *listing_point(struct dvec3 p) { return json_pack("[o, o, o]", json_number(p.x), json_number(p.y), json_number(p.z)); }
+json_t *listing_point(struct dvec3 p)
+{
+    p = dvec3_add(p, dvec3(0, 0, 0)); /* -0 becomes 0 */
+    return json_pack("[o, o, o]", json_number(p.x), json_number(p.y), json_number(p.z));
+}
 
 static json_t *degrees(double radians) { return json_number(radians * (180 / M_PI)); }
 

@@ -76,7 +76,7 @@ enum { STAMP_ENTRIES = 7 };
 
 static void describe_camera(const struct scene *scene, const struct camera *c, char *out, size_t size)
 {
-    struct dvec3 eye = dvec3_add(c->eye, scene->origin), forward = dvec3_neg(c->back);
+    struct dvec3 eye = dvec3_add(c->eye, scene->origin), forward = dvec3_sub(dvec3(0, 0, 0), c->back);
     snprintf(out, size, "eye=%.9g,%.9g,%.9g forward=%.9g,%.9g,%.9g up=%.9g,%.9g,%.9g %s=%.9g", eye.x, eye.y, eye.z, forward.x,
              forward.y, forward.z, c->up.x, c->up.y, c->up.z, c->orthographic ? "height" : "fov",
              c->orthographic ? 2 * c->ymag : c->yfov * (180 / M_PI));
