@@ -307,6 +307,8 @@ bool common_options_settings(const struct common_options *o, const struct scene 
         out->light_count = o->light_count;
         for (size_t i = 0; i < o->light_count; i++)
             out->lights[i] = light_from_world(scene, &o->lights[i]);
+    } else if (scene->light_count > RENDERER_LIGHTS_MAX) {
+        log_warning("the scene has %zu lights; the first %d are used", scene->light_count, RENDERER_LIGHTS_MAX);
     }
     if (o->system) {
         out->system = o->system;

@@ -158,6 +158,20 @@ static void print_summary(const char *name, const struct scene *s, const struct 
     }
 }
 
+/* Adds what this program, not the file's reader, will pass over. */
+static bool add_warnings(const struct scene *scene, struct import_report *report, struct error *err)
+{
+    if (scene->light_count <= RENDERER_LIGHTS_MAX)
+        return true;
+    void *grown = realloc(report->warnings, (report->warning_count + 1) * sizeof report->warnings[0]);
+    if (!grown)
+        return error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for the warnings");
+    report->warnings = grown;
+    snprintf(report->warnings[report->warning_count++], sizeof report->warnings[0], "%zu lights: the first %d are used",
+             scene->light_count, RENDERER_LIGHTS_MAX);
+    return true;
+}
+
 static bool report_scene(const char *name, const struct check_options *options, const struct scene *scene,
                          const struct import_report *report, struct error *err)
 {
@@ -180,7 +194,7 @@ int command_check(int argc, char **argv)
     bool good = !options.json || output_check(options.json, &err);
     if (good)
         scene = strncmp(name, "builtin:", 8) ? import_gltf(name, &report, &err) : scene_load(name, &err);
-    good = scene && report_scene(name, &options, scene, &report, &err);
+    good = scene && add_warnings(scene, &report, &err) && report_scene(name, &options, scene, &report, &err);
     scene_destroy(scene);
     free(report.warnings);
     return good ? 0 : command_fail(&err);
