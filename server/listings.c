@@ -7,13 +7,16 @@
 #include "lights.h"
 #include "output.h"
 
+/* A number that is whole by its nature, or any other. */
+static json_t *range_number(double value, bool whole) { return whole ? json_integer((json_int_t)value) : json_number(value); }
+
 static json_t *builtin_params(const struct builtin_param *params)
 {
     json_t *array = json_array();
     for (const struct builtin_param *p = params; p && p->name; p++)
-        json_array_append_new(array,
-                              json_pack("{s:s, s:s, s:o, s:o, s:o}", "name", p->name, "help", p->help, "min", json_number(p->min),
-                                        "max", json_number(p->max), "default", json_number(p->initial)));
+        json_array_append_new(array, json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "name", p->name, "help", p->help, "kind",
+                                               p->whole ? "int" : "float", "min", range_number(p->min, p->whole), "max",
+                                               range_number(p->max, p->whole), "default", range_number(p->initial, p->whole)));
     return array;
 }
 
@@ -48,9 +51,9 @@ static json_t *algorithm_param(const struct param_desc *p)
         return object;
     }
     bool whole = p->kind == PARAM_INT;
-    json_object_set_new(object, "min", whole ? json_integer((json_int_t)p->min) : json_number(p->min));
-    json_object_set_new(object, "max", whole ? json_integer((json_int_t)p->max) : json_number(p->max));
-    json_object_set_new(object, "default", whole ? json_integer((json_int_t)p->initial) : json_number(p->initial));
+    json_object_set_new(object, "min", range_number(p->min, whole));
+    json_object_set_new(object, "max", range_number(p->max, whole));
+    json_object_set_new(object, "default", range_number(p->initial, whole));
     if (p->odd)
         json_object_set_new(object, "odd", json_true());
     return object;

@@ -7,7 +7,7 @@
 
 enum { DEVICES_MAX = 32 };
 
-json_t *listing_scenes(void); /* [{name, help, params: [{name, help, min, max, default}]}]; names begin with "builtin:" */
+json_t *listing_scenes(void); /* [{name, help, params: [{name, help, kind, min, max, default}]}]; names begin with "builtin:" */
 json_t *listing_algorithms(
     void); /* [{name, title, help, lights, params: [{name, unit, help, kind, min, max, default, choices, odd}]}] */
 json_t *listing_devices(const struct device_info *devices, size_t count);

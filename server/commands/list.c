@@ -36,7 +36,7 @@ static const struct syntax syntax = {
                 "  gnomon list devices --json -\n",
 };
 
-static void print_range(double min, double max, double initial) { printf("%g to %g, default %g", min, max, initial); }
+static void print_range(double min, double max, double initial) { printf("%.9g to %.9g, default %.9g", min, max, initial); }
 
 static void print_scenes(void)
 {
@@ -46,7 +46,7 @@ static void print_scenes(void)
         for (const struct builtin_param *p = b->params; p && p->name; p++) {
             printf("    %-12s ", p->name);
             print_range(p->min, p->max, p->initial);
-            printf(": %s\n", p->help);
+            printf("%s: %s\n", p->whole ? ", whole" : "", p->help);
         }
     }
     printf("A path to a .gltf or .glb file is a scene too.\n");
