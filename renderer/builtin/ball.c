@@ -4,18 +4,18 @@
 
 #define OUTER_RADIUS 1.0
 #define INNER_RADIUS 0.62
-#define WIRE_SIDES 4
-#define JOINT_SIZE 1.7 /* radius, in wires' radii */
+#define WIRE_SIDES   4
+#define JOINT_SIZE   1.7 /* radius, in wires' radii */
 
 /* The icosahedron's 12 corners: (0, +-1, +-g) and its cyclic shifts, and its faces, outward. */
 #define G 1.6180339887498949
 static const struct dvec3 corners[12] = {
-    {-1, G, 0}, {1, G, 0}, {-1, -G, 0}, {1, -G, 0}, {0, -1, G}, {0, 1, G}, {0, -1, -G}, {0, 1, -G}, {G, 0, -1}, {G, 0, 1},
-    {-G, 0, -1}, {-G, 0, 1},
+    {-1, G, 0},  {1, G, 0},  {-1, -G, 0}, {1, -G, 0}, {0, -1, G},  {0, 1, G},
+    {0, -1, -G}, {0, 1, -G}, {G, 0, -1},  {G, 0, 1},  {-G, 0, -1}, {-G, 0, 1},
 };
 static const unsigned char faces[20][3] = {
     {0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-    {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1},
+    {3, 9, 4},  {3, 4, 2}, {3, 2, 6}, {3, 6, 8},  {3, 8, 9},   {4, 9, 5}, {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1},
 };
 
 struct ball {

@@ -2,9 +2,9 @@
 #include "builtin/scenes.h"
 
 struct placed_box {
-    double x, y, z;             /* middle of the bottom face */
+    double x, y, z; /* middle of the bottom face */
     double width, height, depth;
-    double turn;                /* radians */
+    double turn; /* radians */
     float rgb[3];
 };
 

@@ -9,18 +9,12 @@
 #include "builtin/scenes.h"
 
 const struct builtin_desc *const builtin_list[] = {
-    &builtin_box.desc,
-    &builtin_ball.desc,
-    &builtin_tree.desc,
-    &builtin_butterfly.desc,
-    &builtin_dragon.desc,
-    &builtin_hard_grazing.desc,
-    &builtin_hard_contact.desc,
-    &builtin_hard_fan.desc,
-    &builtin_hard_depth.desc,
-    &builtin_hard_degenerate.desc,
-    &builtin_hard_twosided.desc,
-    &builtin_hard_grid.desc,
+    &builtin_box.desc,           &builtin_ball.desc,
+    &builtin_tree.desc,          &builtin_butterfly.desc,
+    &builtin_dragon.desc,        &builtin_hard_grazing.desc,
+    &builtin_hard_contact.desc,  &builtin_hard_fan.desc,
+    &builtin_hard_depth.desc,    &builtin_hard_degenerate.desc,
+    &builtin_hard_twosided.desc, &builtin_hard_grid.desc,
 };
 
 const size_t builtin_count = sizeof builtin_list / sizeof builtin_list[0];
@@ -33,10 +27,7 @@ struct text {
     int length;
 };
 
-static struct text text_until(const char *start, const char *stop)
-{
-    return (struct text){start, (int)strcspn(start, stop)};
-}
+static struct text text_until(const char *start, const char *stop) { return (struct text){start, (int)strcspn(start, stop)}; }
 
 static bool text_is(struct text t, const char *word)
 {
@@ -52,8 +43,8 @@ static const struct builtin_scene *find_scene(struct text name, struct error *er
         size_t used = strlen(known);
         snprintf(known + used, sizeof known - used, "%s%s", i > 0 ? ", " : "", builtin_list[i]->name);
     }
-    error_set(err, ERROR_USAGE, "scene", "unknown built-in scene '%.*s'; known are %s", name.length > 60 ? 60 : name.length, name.start,
-              known);
+    error_set(err, ERROR_USAGE, "scene", "unknown built-in scene '%.*s'; known are %s", name.length > 60 ? 60 : name.length,
+              name.start, known);
     return NULL;
 }
 
@@ -93,8 +84,8 @@ static bool parse_value(const struct builtin_scene *scene, const struct builtin_
     if (number)
         return true;
     return error_set(err, ERROR_USAGE, "scene", "builtin:%s: '%.*s' is not a value for %s; it takes a %snumber from %g to %.10g",
-                     scene->desc.name, written.length > 40 ? 40 : written.length, written.start, p->name, p->whole ? "whole " : "",
-                     p->min, p->max);
+                     scene->desc.name, written.length > 40 ? 40 : written.length, written.start, p->name,
+                     p->whole ? "whole " : "", p->min, p->max);
 }
 
 /* One key=value. `given`: a bit a parameter. */

@@ -15,8 +15,8 @@ struct builtin_param {
 };
 
 struct builtin_desc {
-    const char *name;  /* "box", "hard-04-contact" */
-    const char *help;  /* one sentence */
+    const char *name;                   /* "box", "hard-04-contact" */
+    const char *help;                   /* one sentence */
     const struct builtin_param *params; /* ended by name = NULL; may be NULL */
 };
 

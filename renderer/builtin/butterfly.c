@@ -2,9 +2,9 @@
  * thickness, slit along their veins so that light comes through lines thinner than a texel, and legs, antennae and veins as thin as hairs. */
 #include "builtin/scenes.h"
 
-#define PI 3.14159265358979323846
-#define SLIT 0.0035     /* half width of a slit; a texel of a 1024 map that holds the model is about 0.002 */
-#define WING_START 0.05 /* of a panel, of its vein's length */
+#define PI         3.14159265358979323846
+#define SLIT       0.0035 /* half width of a slit; a texel of a 1024 map that holds the model is about 0.002 */
+#define WING_START 0.05   /* of a panel, of its vein's length */
 
 /* A vein: its way from the wing's root (radians, 0 = straight sideways, positive = forwards) and its length. */
 struct vein {
@@ -21,24 +21,37 @@ static const struct vein hind_veins[] = {
 struct wing {
     const struct vein *veins;
     unsigned panels;
-    double side;         /* +1 or -1 */
-    double raised;       /* radians above the horizontal */
-    struct dvec3 root;   /* in the body's frame: x sideways, y up, z forwards */
-    double lift;         /* of the surface along its normal: keeps the hind wing below the fore wing */
+    double side;       /* +1 or -1 */
+    double raised;     /* radians above the horizontal */
+    struct dvec3 root; /* in the body's frame: x sideways, y up, z forwards */
+    double lift;       /* of the surface along its normal: keeps the hind wing below the fore wing */
 };
 
 static const struct wing wings[4] = {
-    {fore_veins, 7, 1, 0.62, {0.03, 0.46, 0.06}, 0.012},
-    {fore_veins, 7, -1, 0.62, {-0.03, 0.46, 0.06}, 0.012},
-    {hind_veins, 6, 1, 0.50, {0.03, 0.45, -0.02}, -0.004},
-    {hind_veins, 6, -1, 0.50, {-0.03, 0.45, -0.02}, -0.004},
+    {fore_veins, 7, 1, 0.48, {0.03, 0.46, 0.06}, 0.012},
+    {fore_veins, 7, -1, 0.48, {-0.03, 0.46, 0.06}, 0.012},
+    {hind_veins, 6, 1, 0.36, {0.03, 0.45, -0.02}, -0.004},
+    {hind_veins, 6, -1, 0.36, {-0.03, 0.45, -0.02}, -0.004},
 };
 
-/* The whole animal is turned a little away from the camera. */
-static struct dvec3 place(struct dvec3 p)
+/* The animal is seen from behind, turned a little. */
+static struct dvec3 turned(struct dvec3 p)
 {
-    const double c = 0.8253356149, s = 0.5646424734; /* of 0.6 radians */
+    const double c = -0.9553364891, s = -0.2955202067; /* of pi + 0.3 radians */
     return dvec3(c * p.x + s * p.z, p.y, c * p.z - s * p.x);
+}
+
+/* All but the legs also stands with its head up. */
+static struct dvec3 pitched(struct dvec3 direction)
+{
+    const double c = 0.9210609940, s = 0.3894183423; /* of 0.4 radians */
+    return dvec3(direction.x, c * direction.y + s * direction.z, c * direction.z - s * direction.y);
+}
+
+static struct dvec3 posed(struct dvec3 p)
+{
+    const struct dvec3 thorax = {0, 0.445, 0.080};
+    return turned(dvec3_add(thorax, pitched(dvec3_sub(p, thorax))));
 }
 
 /* A wing is a bent sheet over polar coordinates about its root. */
@@ -47,7 +60,7 @@ static struct dvec3 wing_point(const struct wing *w, double angle, double distan
     double out = distance * cos(angle), forward = distance * sin(angle);
     double up = w->lift + 0.10 * distance * (1 - distance) + 0.05 * forward * out;
     double c = cos(w->raised), s = sin(w->raised);
-    return place(dvec3_add(w->root, dvec3(w->side * (c * out - s * up), s * out + c * up, forward)));
+    return posed(dvec3_add(w->root, dvec3(w->side * (c * out - s * up), s * out + c * up, forward)));
 }
 
 /* Slits begin off the root and end before the margin, so that the panels hold together. */
@@ -67,13 +80,13 @@ static void panel_color(struct mesh_builder *b, double u, double v)
     mesh_builder_color(b, red + (0.02 - red) * dark + 0.8 * dot, green + (0.015 - green) * dark + 0.8 * dot, 0.03 + 0.75 * dot);
 }
 
-static void add_panel(struct mesh_builder *b, const struct wing *w, unsigned panel, unsigned steps)
+static void add_panel(struct mesh_builder *b, const struct wing *w, unsigned panel, unsigned rows, unsigned columns)
 {
     const struct vein *near = &w->veins[panel], *far = near + 1;
     uint32_t first = mesh_builder_vertices(b);
-    for (unsigned i = 0; i <= steps; i++)
-        for (unsigned j = 0; j <= steps; j++) {
-            double u = WING_START + (1 - WING_START) * i / steps, v = (double)j / steps;
+    for (unsigned i = 0; i <= rows; i++)
+        for (unsigned j = 0; j <= columns; j++) {
+            double u = WING_START + (1 - WING_START) * i / rows, v = (double)j / columns;
             double length = near->length + (far->length - near->length) * v * v * (3 - 2 * v);
             double scallop = 1 - 0.05 * sin(PI * v) * u * u;
             double distance = u * length * scallop;
@@ -82,9 +95,9 @@ static void add_panel(struct mesh_builder *b, const struct wing *w, unsigned pan
             panel_color(b, u, v);
             mesh_builder_vertex(b, wing_point(w, angle, distance), dvec3(0, 1, 0));
         }
-    for (unsigned i = 0; i < steps; i++)
-        for (unsigned j = 0; j < steps; j++) {
-            uint32_t here = first + i * (steps + 1) + j, next = here + steps + 1;
+    for (unsigned i = 0; i < rows; i++)
+        for (unsigned j = 0; j < columns; j++) {
+            uint32_t here = first + i * (columns + 1) + j, next = here + columns + 1;
             if (w->side > 0)
                 mesh_builder_quad(b, here, here + 1, next + 1, next);
             else
@@ -109,12 +122,13 @@ static void add_veins(struct mesh_builder *b, const struct wing *w)
     }
 }
 
-static void add_hair(struct mesh_builder *b, const struct dvec3 *corners, unsigned corner_count, double thick, double thin)
+static void add_hair(struct mesh_builder *b, const struct dvec3 *corners, unsigned corner_count, double thick, double thin,
+                     struct dvec3 (*pose)(struct dvec3))
 {
     struct dvec3 points[8];
     double radii[8];
     for (unsigned i = 0; i < corner_count; i++) {
-        points[i] = place(corners[i]);
+        points[i] = pose(corners[i]);
         radii[i] = thick + (thin - thick) * i / (corner_count - 1);
     }
     mesh_builder_tube(b, points, radii, corner_count, 6, true);
@@ -126,10 +140,13 @@ static void add_legs(struct mesh_builder *b)
         for (int pair = -1; pair <= 1; pair++) {
             double z = 0.05 + 0.045 * pair, reach = 0.12 * pair;
             const struct dvec3 leg[5] = {
-                {side * 0.02, 0.40, z}, {side * 0.12, 0.43, z + 0.4 * reach}, {side * 0.22, 0.20, z + reach},
-                {side * 0.25, 0.02, z + 1.3 * reach}, {side * 0.29, 0.0025, z + 1.5 * reach},
+                {side * 0.02, 0.40, z},
+                {side * 0.12, 0.43, z + 0.4 * reach},
+                {side * 0.22, 0.20, z + reach},
+                {side * 0.25, 0.02, z + 1.3 * reach},
+                {side * 0.29, 0.0025, z + 1.5 * reach},
             };
-            add_hair(b, leg, 5, 0.0065, 0.0022);
+            add_hair(b, leg, 5, 0.0065, 0.0022, turned);
         }
 }
 
@@ -140,9 +157,9 @@ static void add_antennae(struct mesh_builder *b)
             {side * 0.012, 0.50, 0.23}, {side * 0.05, 0.60, 0.30}, {side * 0.09, 0.71, 0.37},
             {side * 0.13, 0.81, 0.45},  {side * 0.17, 0.88, 0.53}, {side * 0.20, 0.91, 0.58},
         };
-        add_hair(b, antenna, 6, 0.0030, 0.0018);
+        add_hair(b, antenna, 6, 0.0030, 0.0018, posed);
         const struct dvec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        mesh_builder_ellipsoid(b, place(antenna[5]), axes, (const double[]){0.009, 0.009, 0.009}, 8, 10);
+        mesh_builder_ellipsoid(b, posed(antenna[5]), axes, (const double[]){0.009, 0.009, 0.009}, 8, 10);
     }
 }
 
@@ -152,15 +169,15 @@ static void add_body(struct mesh_builder *b)
         struct dvec3 center;
         double radii[3];
     } pieces[] = {
-        {{0, 0.485, 0.205}, {0.040, 0.040, 0.042}}, /* head */
-        {{0, 0.445, 0.080}, {0.058, 0.060, 0.110}}, /* thorax */
-        {{0, 0.415, -0.180}, {0.040, 0.042, 0.210}}, /* abdomen */
+        {{0, 0.485, 0.205}, {0.040, 0.040, 0.042}},      /* head */
+        {{0, 0.445, 0.080}, {0.058, 0.060, 0.110}},      /* thorax */
+        {{0, 0.415, -0.180}, {0.040, 0.042, 0.210}},     /* abdomen */
         {{-0.030, 0.495, 0.222}, {0.018, 0.022, 0.022}}, /* eyes */
         {{0.030, 0.495, 0.222}, {0.018, 0.022, 0.022}},
     };
-    const struct dvec3 axes[3] = {place(dvec3(1, 0, 0)), dvec3(0, 1, 0), place(dvec3(0, 0, 1))};
+    const struct dvec3 axes[3] = {turned(dvec3(1, 0, 0)), turned(pitched(dvec3(0, 1, 0))), turned(pitched(dvec3(0, 0, 1)))};
     for (unsigned i = 0; i < sizeof pieces / sizeof pieces[0]; i++)
-        mesh_builder_ellipsoid(b, place(pieces[i].center), axes, pieces[i].radii, i < 3 ? 24 : 12, i < 3 ? 32 : 16);
+        mesh_builder_ellipsoid(b, posed(pieces[i].center), axes, pieces[i].radii, i < 3 ? 24 : 12, i < 3 ? 32 : 16);
 }
 
 static void make_butterfly(struct mesh_builder *b, const double *values)
@@ -175,11 +192,12 @@ static void make_butterfly(struct mesh_builder *b, const double *values)
     mesh_builder_end(b);
 
     unsigned panels = wings[0].panels + wings[1].panels + wings[2].panels + wings[3].panels;
-    unsigned steps = (unsigned)fmax(2, round(sqrt(left / (2.0 * panels))));
+    unsigned columns = (unsigned)fmax(2, round(sqrt(left / (2.0 * panels))));
+    unsigned rows = (unsigned)fmax(2, round(left / (2.0 * panels * columns)));
     mesh_builder_begin_colored(b, "wings", mesh_builder_material(b, "wing", (const float[]){1, 1, 1}, 0.7f, true));
     for (unsigned i = 0; i < 4; i++)
         for (unsigned k = 0; k < wings[i].panels; k++)
-            add_panel(b, &wings[i], k, steps);
+            add_panel(b, &wings[i], k, rows, columns);
     mesh_builder_end(b);
     mesh_builder_stage(b);
 }

@@ -44,10 +44,7 @@ const struct builtin_scene builtin_hard_depth = {
     {"hard-08-depth", "Many triangles at different depths in one texel.", depth_params}, make_depth};
 
 /* Added to every x of a caster at odd height y, so that x + y/4 is a pixel centre's. */
-static double grid_shift(double y)
-{
-    return 0.5 - (y / 4 - floor(y / 4));
-}
+static double grid_shift(double y) { return 0.5 - (y / 4 - floor(y / 4)); }
 
 /* A flat triangle at odd height y: whole-number corners (x, z), counter-clockwise seen from above. */
 static void grid_triangle(struct mesh_builder *b, double y, const int corners[6])

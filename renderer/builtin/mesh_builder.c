@@ -12,17 +12,11 @@
 _Static_assert(sizeof(struct builder_float3) == sizeof(float[3]), "moved into the scene as float[3]");
 _Static_assert(sizeof(struct builder_float4) == sizeof(float[4]), "moved into the scene as float[4]");
 
-static struct builder_float3 to_float3(struct dvec3 p)
-{
-    return (struct builder_float3){{(float)p.x, (float)p.y, (float)p.z}};
-}
+static struct builder_float3 to_float3(struct dvec3 p) { return (struct builder_float3){{(float)p.x, (float)p.y, (float)p.z}}; }
 
 static struct dvec3 from_float3(struct builder_float3 p) { return dvec3_from_float(p.v); }
 
-static struct mesh *current_mesh(struct mesh_builder *b)
-{
-    return &b->meshes.data[b->meshes.count - 1];
-}
+static struct mesh *current_mesh(struct mesh_builder *b) { return &b->meshes.data[b->meshes.count - 1]; }
 
 static void release(struct mesh_builder *b)
 {
@@ -278,7 +272,8 @@ static void tube_ring(struct mesh_builder *b, struct dvec3 center, struct dvec3 
     }
 }
 
-static void tube_cap(struct mesh_builder *b, struct dvec3 center, struct dvec3 outward, uint32_t ring, unsigned sides, bool reverse)
+static void tube_cap(struct mesh_builder *b, struct dvec3 center, struct dvec3 outward, uint32_t ring, unsigned sides,
+                     bool reverse)
 {
     uint32_t middle = mesh_builder_vertex(b, center, dvec3_normalize(outward));
     for (unsigned k = 0; k < sides; k++) {
@@ -379,14 +374,25 @@ void mesh_builder_camera(struct mesh_builder *b, struct dvec3 eye, struct dvec3 
     struct dvec3 away = dvec3_sub(eye, target), back = dvec3_normalize(away);
     struct dvec3 right = dvec3_normalize(dvec3_cross(dvec3(0, 1, 0), back));
     double near = 0.01 * dvec3_length(away);
-    add_camera(b, (struct camera){.eye = eye, .right = right, .up = dvec3_cross(back, right), .back = back, .yfov = yfov,
-                                  .near = near, .far = INFINITY});
+    add_camera(b, (struct camera){.eye = eye,
+                                  .right = right,
+                                  .up = dvec3_cross(back, right),
+                                  .back = back,
+                                  .yfov = yfov,
+                                  .near = near,
+                                  .far = INFINITY});
 }
 
 void mesh_builder_camera_above(struct mesh_builder *b, double height, double half_height)
 {
-    add_camera(b, (struct camera){.orthographic = true, .eye = dvec3(0, height, 0), .right = dvec3(1, 0, 0), .up = dvec3(0, 0, -1),
-                                  .back = dvec3(0, 1, 0), .ymag = half_height, .near = 0, .far = 2 * height});
+    add_camera(b, (struct camera){.orthographic = true,
+                                  .eye = dvec3(0, height, 0),
+                                  .right = dvec3(1, 0, 0),
+                                  .up = dvec3(0, 0, -1),
+                                  .back = dvec3(0, 1, 0),
+                                  .ymag = half_height,
+                                  .near = 0,
+                                  .far = 2 * height});
 }
 
 void mesh_builder_stage(struct mesh_builder *b)

@@ -23,8 +23,8 @@ struct builder_float4 {
 
 struct mesh_builder {
     bool failed;
-    bool colored;    /* the mesh being made has vertex colours */
-    float color[4];  /* of the vertices to come; linear */
+    bool colored;   /* the mesh being made has vertex colours */
+    float color[4]; /* of the vertices to come; linear */
     ARRAY(struct builder_float3) positions;
     ARRAY(struct builder_float3) normals;
     ARRAY(struct builder_float4) colors;

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
+#define PI           3.14159265358979323846
 #define LENGTH_STEPS 1024 /* of the table that turns length into spline parameter */
 
 /* The curve at one parameter. */

@@ -14,10 +14,10 @@ struct sweep_knot {
 
 /* A place on the surface before it is displaced. */
 struct sweep_place {
-    double along;     /* length of curve behind it */
-    double length;    /* of the whole curve */
-    double angle;     /* from the top, (-pi, pi] */
-    double radius;    /* there; already rounded off towards the ends */
+    double along;  /* length of curve behind it */
+    double length; /* of the whole curve */
+    double angle;  /* from the top, (-pi, pi] */
+    double radius; /* there; already rounded off towards the ends */
     struct dvec3 position;
 };
 

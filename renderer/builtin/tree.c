@@ -3,7 +3,7 @@
 #include "builtin/scenes.h"
 
 #define LEVELS 4
-#define PI 3.14159265358979323846
+#define PI     3.14159265358979323846
 
 struct level {
     unsigned segments, sides, children;
@@ -13,10 +13,10 @@ struct level {
 };
 
 static const struct level levels[LEVELS] = {
-    {12, 14, 11, 1.45, 0.00, 0.30, 0.36},
-    {8, 8, 7, 0.62, 1.00, 0.30, 0.25},
-    {5, 5, 5, 0.52, 0.80, 0.35, 0.25},
-    {4, 4, 0, 0.50, 0.70, 0.40, 0.00},
+    {12, 14, 11, 1.40, 0.00, 0.30, 0.34},
+    {8, 8, 7, 0.64, 1.05, 0.30, 0.25},
+    {5, 5, 5, 0.56, 0.85, 0.35, 0.20},
+    {4, 4, 0, 0.62, 0.75, 0.40, 0.00},
 };
 
 struct twig {
@@ -25,7 +25,7 @@ struct twig {
 
 struct tree {
     struct mesh_builder *b;
-    uint32_t draws; /* of random numbers so far */
+    uint32_t draws;           /* of random numbers so far */
     ARRAY(struct twig) twigs; /* pieces of branch that bear leaves */
 };
 
@@ -37,10 +37,7 @@ struct branch {
 
 #define MAX_SEGMENTS 12
 
-static double draw(struct tree *t, double low, double high)
-{
-    return low + (high - low) * hash_unit(t->draws++);
-}
+static double draw(struct tree *t, double low, double high) { return low + (high - low) * hash_unit(t->draws++); }
 
 static struct dvec3 draw_direction(struct tree *t)
 {
@@ -56,7 +53,7 @@ static void grow_line(struct tree *t, const struct branch *branch, struct dvec3 
     double step = branch->length / level->segments;
     for (unsigned i = 0; i <= level->segments; i++) {
         double along = (double)i / level->segments;
-        double root = branch->level == 0 ? 0.9 * exp(-14 * along) : 0; /* the trunk widens at its foot */
+        double root = branch->level == 0 ? 0.5 * exp(-14 * along) : 0; /* the trunk widens at its foot */
         points[i] = p;
         radii[i] = branch->radius * (1 + (level->thinning - 1) * along + root);
         p = dvec3_mad(p, d, step);
@@ -74,7 +71,8 @@ static void bear_leaves(struct tree *t, const struct dvec3 *points, unsigned seg
     }
 }
 
-static struct branch make_child(struct tree *t, const struct branch *parent, struct dvec3 start, struct dvec3 along, unsigned number)
+static struct branch make_child(struct tree *t, const struct branch *parent, struct dvec3 start, struct dvec3 along,
+                                unsigned number)
 {
     const struct level *level = &levels[parent->level + 1];
     struct dvec3 side = dvec3_normalize(dvec3_cross(fabs(along.y) < 0.8 ? dvec3(0, 1, 0) : dvec3(1, 0, 0), along));
@@ -118,7 +116,7 @@ static void add_leaf(struct tree *t, const struct twig *twig)
     struct dvec3 axis = dvec3_normalize(dvec3_add(dvec3_mad(draw_direction(t), along, 0.6), dvec3(0, -0.25, 0)));
     struct dvec3 side = dvec3_normalize(dvec3_cross(axis, draw_direction(t)));
     struct dvec3 normal = dvec3_cross(side, axis);
-    double length = draw(t, 0.050, 0.085), width = length * draw(t, 0.20, 0.30), fold = draw(t, 0, 0.35) * width;
+    double length = draw(t, 0.060, 0.100), width = length * draw(t, 0.20, 0.30), fold = draw(t, 0, 0.35) * width;
     struct dvec3 middle = dvec3_mad(dvec3_mad(base, axis, 0.45 * length), normal, fold);
     double light = draw(t, 0.7, 1.15), yellow = draw(t, 0, 1);
     mesh_builder_color(t->b, (0.14 + 0.18 * yellow * yellow) * light, 0.33 * light, 0.07 * light);
@@ -133,7 +131,7 @@ static void make_tree(struct mesh_builder *b, const double *values)
 {
     struct tree t = {.b = b};
     mesh_builder_begin(b, "wood", mesh_builder_material(b, "bark", (const float[]){0.26f, 0.17f, 0.10f}, 0.95f, false));
-    grow(&t, (struct branch){.direction = {0, 1, 0}, .length = levels[0].length, .radius = 0.085});
+    grow(&t, (struct branch){.direction = {0, 1, 0}, .length = levels[0].length, .radius = 0.075});
     mesh_builder_end(b);
     mesh_builder_begin_colored(b, "leaves", mesh_builder_material(b, "leaf", (const float[]){1, 1, 1}, 0.6f, true));
     for (unsigned i = 0; i < (unsigned)values[0] && !b->failed; i++)
@@ -144,8 +142,9 @@ static void make_tree(struct mesh_builder *b, const double *values)
 }
 
 static const struct builtin_param params[] = {
-    {"leaves", "number of leaves, two triangles each", 0, 500000, 12000, true},
+    {"leaves", "number of leaves, two triangles each", 0, 500000, 12033, true},
     {NULL},
 };
 
-const struct builtin_scene builtin_tree = {{"tree", "A tree with many overlapping leaves, each cut out as geometry.", params}, make_tree};
+const struct builtin_scene builtin_tree = {{"tree", "A tree with many overlapping leaves, each cut out as geometry.", params},
+                                           make_tree};

@@ -114,11 +114,16 @@ static void test_triangle_counts(void **state)
         size_t triangles;
         double tolerance;
     } wanted[] = {
-        {"ball", 39936, 0.01},          {"tree", 46036, 0.01},
-        {"butterfly", 73138, 0.03},     {"butterfly:triangles=30000", 30000, 0.05},
-        {"dragon", 870000, 1e-4},       {"dragon:triangles=1000", 1000, 0.02},
-        {"dragon:triangles=47800", 47800, 0.001}, {"dragon:triangles=2500000", 2500000, 1e-4},
-        {"tree:leaves=0", 21970, 0.02}, {"hard-08-depth:triangles=4096", 4096 + 2 + 24, 0},
+        {"ball", 39936, 0.005},
+        {"tree", 46036, 0},
+        {"butterfly", 73138, 0.015},
+        {"butterfly:triangles=30000", 30000, 0.05},
+        {"dragon", 870000, 1e-4},
+        {"dragon:triangles=1000", 1000, 0.02},
+        {"dragon:triangles=47800", 47800, 0.001},
+        {"dragon:triangles=2500000", 2500000, 1e-4},
+        {"tree:leaves=0", 21970, 0.02},
+        {"hard-08-depth:triangles=4096", 4096 + 2 + 24, 0},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
         struct scene *scene = make(wanted[i].name);
@@ -141,7 +146,8 @@ static const struct instance *find_instance(const struct scene *scene, const cha
 static void test_models_stand_on_a_planar_ground(void **state)
 {
     (void)state;
-    static const char *const models[] = {"box", "ball", "tree", "butterfly", "dragon:triangles=50000", "hard-04-contact", "hard-06-fan"};
+    static const char *const models[] = {"box",        "ball", "tree", "butterfly", "dragon:triangles=50000", "hard-04-contact",
+                                         "hard-06-fan"};
     for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
         struct scene *scene = make(models[i]);
         const struct instance *ground = find_instance(scene, "ground");
