@@ -1,5 +1,5 @@
-/* Two nested geodesic balls of thin wires, after the kind "ball" of the coverage shadow map paper (Li et al. 2017, table 2: 39,936 triangles):
- * wires one over the other at every angle, most of them thinner than a texel. */
+/* Two nested geodesic balls of thin wires, after the kind "ball" of the coverage shadow map paper (Li et al. 2017, table 2:
+ * 39,936 triangles): wires one over the other at every angle, most of them thinner than a texel. */
 #include "builtin/scenes.h"
 
 #define OUTER_RADIUS 1.0

@@ -1,5 +1,6 @@
-/* A butterfly, after the kind "butterfly" of the coverage shadow map paper (Li et al. 2017, table 2: 73,138 triangles): wings without any
- * thickness, slit along their veins so that light comes through lines thinner than a texel, and legs, antennae and veins as thin as hairs. */
+/* A butterfly, after the kind "butterfly" of the coverage shadow map paper (Li et al. 2017, table 2: 73,138 triangles): wings
+ * without any thickness, slit along their veins so that light comes through lines thinner than a texel, and legs, antennae and
+ * veins as thin as hairs. */
 #include "builtin/scenes.h"
 
 #define PI         3.14159265358979323846

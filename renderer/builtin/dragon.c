@@ -1,6 +1,6 @@
-/* A dense closed surface with shadows of its own at every scale, in place of the Stanford dragon of the coverage shadow map paper (Li et al.
- * 2017, table 2: about 871,000 triangles): body, legs, toes and horns are closed swept surfaces that reach into one another; scales, spikes and
- * wrinkles are displacements. Every edge has exactly two triangles. */
+/* A dense closed surface with shadows of its own at every scale, in place of the Stanford dragon of the coverage shadow map
+ * paper (Li et al. 2017, table 2: about 871,000 triangles): body, legs, toes and horns are closed swept surfaces that reach into
+ * one another; scales, spikes and wrinkles are displacements. Every edge has exactly two triangles. */
 #include "builtin/scenes.h"
 #include "builtin/sweep.h"
 

@@ -25,10 +25,10 @@ static void add_lens(struct mesh_builder *b, struct dvec3 center, double radius,
     mesh_builder_smooth(b, first);
 }
 
-/* What is to be seen: a closed flat lens, two vertex fans of many slivers, over the floor; a ball; a bar whose shadow edge runs across the fan
- * on the lens and over the ball's shared edges.
- * Right answer: the lens's shadow on the floor is dark without a single lit pixel, above all under the fan's middle, where every edge
- * meets; so is the ball's; the bar's shadow runs straight over the fan's edges. */
+/* What is to be seen: a closed flat lens, two vertex fans of many slivers, over the floor; a ball; a bar whose shadow edge runs
+ * across the fan on the lens and over the ball's shared edges.
+ * Right answer: the lens's shadow on the floor is dark without a single lit pixel, above all under the fan's middle, where every
+ * edge meets; so is the ball's; the bar's shadow runs straight over the fan's edges. */
 static void make_fan(struct mesh_builder *b, const double *values)
 {
     mesh_builder_ground(b, 12, 12, grey);
@@ -73,10 +73,10 @@ static void add_bad_triangles(struct mesh_builder *b, struct dvec3 p, uint32_t g
     mesh_builder_flat_triangle(b, p, dvec3_add(p, dvec3(0.125, 0.25, 0)), dvec3_add(p, dvec3(0.25, 0.5, 0)));
 }
 
-/* What is to be seen: two rows of boxes and a sheet; between their triangles lie triangles of no area, collinear ones, ones that repeat an
- * index, and ones with NaN and infinite vertices.
- * Right answer: exactly the picture of bad=0, which has the good triangles alone. No bad triangle shows, casts, or widens any bounds:
- * zero-area and non-finite triangles are ignored. */
+/* What is to be seen: two rows of boxes and a sheet; between their triangles lie triangles of no area, collinear ones, ones that
+ * repeat an index, and ones with NaN and infinite vertices.
+ * Right answer: exactly the picture of bad=0, which has the good triangles alone. No bad triangle shows, casts, or widens any
+ * bounds: zero-area and non-finite triangles are ignored. */
 static void make_degenerate(struct mesh_builder *b, const double *values)
 {
     mesh_builder_ground(b, 12, 12, grey);
@@ -155,10 +155,10 @@ static void add_sheets(struct mesh_builder *b, double z)
     mesh_builder_flat_quad(b, dvec3(1.1, 0.2, z), dvec3(1.1, 0.7, z), dvec3(1.6, 0.7, z), dvec3(1.6, 0.2, z));
 }
 
-/* What is to be seen: the same four open meshes twice: half a tube, three fins on one edge, a box without a lid, an upright sheet that turns
- * its back to the camera. The back row (z < 0) is double-sided, the front row is not.
- * Right answer: in the front row faces that look away from the camera are not there for the camera (the inside of the half tube and of the
- * box's far walls, the whole upright sheet) but cast: both rows' shadows have the same shapes. */
+/* What is to be seen: the same four open meshes twice: half a tube, three fins on one edge, a box without a lid, an upright
+ * sheet that turns its back to the camera. The back row (z < 0) is double-sided, the front row is not.
+ * Right answer: in the front row faces that look away from the camera are not there for the camera (the inside of the half tube
+ * and of the box's far walls, the whole upright sheet) but cast: both rows' shadows have the same shapes. */
 static void make_twosided(struct mesh_builder *b, const double *values)
 {
     (void)values;

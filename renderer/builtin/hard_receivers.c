@@ -5,11 +5,12 @@
 
 static const float grey[3] = {0.7f, 0.7f, 0.7f};
 
-/* What is to be seen: steps so low that their shadows are 1, 2 and 4 units long whatever the angle, on a floor lit at that angle. Beside
- * them two strips: the near one (z > 0) rises away from the light by twice the angle, the far one sinks by as much.
- * Right answer: the shadows of the steps end 1, 2 and 4 units behind their back edges (within the fp32 rounding of their heights over the
- * tangent: 1e-7 relative). The rising strip is lit, and its shadow on the floor behind it is 8 units long. The sinking strip has
- * N.L = -sin(angle) < 0: it is dark all over and no receiver at all, and the floor behind it is dark for another 4 units. */
+/* What is to be seen: steps so low that their shadows are 1, 2 and 4 units long whatever the angle, on a floor lit at that
+ * angle. Beside them two strips: the near one (z > 0) rises away from the light by twice the angle, the far one sinks by as much.
+ * Right answer: the shadows of the steps end 1, 2 and 4 units behind their back edges (within the fp32 rounding of their heights
+ * over the tangent: 1e-7 relative). The rising strip is lit, and its shadow on the floor behind it is 8 units long. The sinking
+ * strip has N.L = -sin(angle) < 0: it is dark all over and no receiver at all, and the floor behind it is dark for another 4
+ * units. */
 static void make_grazing(struct mesh_builder *b, const double *values)
 {
     double angle = values[0] * PI / 180, slope = tan(angle), rise = 4 * tan(2 * angle);
@@ -37,8 +38,8 @@ const struct builtin_scene builtin_hard_grazing = {
 
 /* What is to be seen: boxes whose bottom faces lie in the floor's own fp32 plane (y = 0 exactly), straight and turned; and a
  * sheet that stands on it on edge.
- * Right answer: every shadow starts at the foot, without a lit gap (detached shadow) and without light inside it (leak). The bottom faces are
- * coplanar with the floor, so they do not cross the floor's light paths. */
+ * Right answer: every shadow starts at the foot, without a lit gap (detached shadow) and without light inside it (leak). The
+ * bottom faces are coplanar with the floor, so they do not cross the floor's light paths. */
 static void make_contact(struct mesh_builder *b, const double *values)
 {
     (void)values;

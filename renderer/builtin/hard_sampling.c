@@ -6,11 +6,11 @@
 static const float grey[3] = {0.7f, 0.7f, 0.7f};
 static const float clay[3] = {0.75f, 0.4f, 0.25f};
 
-/* What is to be seen: a small regular polygon cut into slices like a cake, each slice at a height of its own and the light straight above,
- * seen from so near that only its shadow is in the picture. Two far posts make the light's map 4 units wide, so that the cake, 0.0012 across,
- * fits in one texel of a 1024 map (or in the few around a texel's corner).
- * Right answer: the shadow is the whole polygon, without seams between the slices. A system that keeps k triangles a texel loses the others'
- * slices. */
+/* What is to be seen: a small regular polygon cut into slices like a cake, each slice at a height of its own and the light
+ * straight above, seen from so near that only its shadow is in the picture. Two far posts make the light's map 4 units wide, so
+ * that the cake, 0.0012 across, fits in one texel of a 1024 map (or in the few around a texel's corner).
+ * Right answer: the shadow is the whole polygon, without seams between the slices. A system that keeps k triangles a texel loses
+ * the others' slices. */
 static void make_depth(struct mesh_builder *b, const double *values)
 {
     const struct dvec3 middle = {0.0015, 0, 0.0015};
@@ -90,18 +90,18 @@ static void add_grid_casters(struct mesh_builder *b)
 
 /* What is to be seen, at 64 x 64 pixels: flat casters over a floor, from straight above, each beside its shadow.
  *
- * Why shadow edges run exactly through pixel centres: the orthographic camera spans 64 x 64 units about the origin, so at 64 x 64 pixels
- * the centre of pixel (i, j) lies at x = i - 31.5, z = j - 31.5, computed without rounding. The light's direction is s * (1, -4, 2) with
- * s = 1 / sqrt(21) rounded once: multiplying by 2 and 4 is exact, so the three numbers stand in the ratio 1 : -4 : 2 exactly (and still do
- * after a division by a common length). A corner (x, y, z) therefore throws its shadow on y = 0 at (x + y/4, z + y/2) exactly. The flat
- * casters have whole z, odd y and an x that makes x + y/4 a whole number and a half: every corner of their shadows is a pixel centre, and
- * the shadows' edges along the axes, at 45 degrees and of slope 1/2 pass through the centres of all, or every second, of the pixels they cross.
- * The casters' own edges meet no pixel centre, for their x has a quarter in it: what the camera sees is beyond doubt. Nor does the floor's
- * diagonal, z = 5/6 x.
+ * Why shadow edges run exactly through pixel centres: the orthographic camera spans 64 x 64 units about the origin, so at 64 x
+ * 64 pixels the centre of pixel (i, j) lies at x = i - 31.5, z = j - 31.5, computed without rounding. The light's direction is s
+ * * (1, -4, 2) with s = 1 / sqrt(21) rounded once: multiplying by 2 and 4 is exact, so the three numbers stand in the ratio 1 :
+ * -4 : 2 exactly (and still do after a division by a common length). A corner (x, y, z) therefore throws its shadow on y = 0 at
+ * (x + y/4, z + y/2) exactly. The flat casters have whole z, odd y and an x that makes x + y/4 a whole number and a half: every
+ * corner of their shadows is a pixel centre, and the shadows' edges along the axes, at 45 degrees and of slope 1/2 pass through
+ * the centres of all, or every second, of the pixels they cross. The casters' own edges meet no pixel centre, for their x has a
+ * quarter in it: what the camera sees is beyond doubt. Nor does the floor's diagonal, z = 5/6 x.
  *
- * Right answer: the half-open rule of the truth at every such pixel: along an edge that two casters' triangles share, in the mesh or in
- * the shadow alone, every pixel is dark; a rectangle's shadow of n x m units has exactly n * m dark pixels; each single unit exactly one; the
- * sheet along the light none. At other sizes it is a harmless scene. */
+ * Right answer: the half-open rule of the truth at every such pixel: along an edge that two casters' triangles share, in the
+ * mesh or in the shadow alone, every pixel is dark; a rectangle's shadow of n x m units has exactly n * m dark pixels; each
+ * single unit exactly one; the sheet along the light none. At other sizes it is a harmless scene. */
 static void make_grid(struct mesh_builder *b, const double *values)
 {
     (void)values;

@@ -1,8 +1,8 @@
-/* Builds a scene piece by piece. Failure (memory, more than 2^32 - 2 vertices) is remembered and told by mesh_builder_finish(), so that
- * scenes need no checks of their own.
+/* Builds a scene piece by piece. Failure (memory, more than 2^32 - 2 vertices) is remembered and told by mesh_builder_finish(),
+ * so that scenes need no checks of their own.
  *
- * A mesh is made between mesh_builder_begin() and mesh_builder_end(), and placed once, as it stands. Vertex numbers count from the
- * mesh's first vertex. Faces are counter-clockwise seen from outside. */
+ * A mesh is made between mesh_builder_begin() and mesh_builder_end(), and placed once, as it stands. Vertex numbers count from
+ * the mesh's first vertex. Faces are counter-clockwise seen from outside. */
 #pragma once
 
 #include <stdbool.h>
@@ -64,12 +64,13 @@ void mesh_builder_flat_quad(struct mesh_builder *b, struct dvec3 p, struct dvec3
 /* `center` of the bottom face, `size` along x, y, z, turned by `turn` radians about the vertical. 12 triangles. */
 void mesh_builder_box(struct mesh_builder *b, struct dvec3 center, struct dvec3 size, double turn);
 
-/* A round tube along `count` >= 2 distinct points, 2 * sides * (count - 1) triangles, smooth, open at both ends. `capped` closes it with
- * 2 * sides more that share its vertices. */
+/* A round tube along `count` >= 2 distinct points, 2 * sides * (count - 1) triangles, smooth, open at both ends. `capped` closes
+ * it with 2 * sides more that share its vertices. */
 void mesh_builder_tube(struct mesh_builder *b, const struct dvec3 *points, const double *radii, unsigned count, unsigned sides,
                        bool capped);
 
-/* An ellipsoid with half axes `radii`, closed, 2 * sides * (rings - 1) triangles; rings >= 2. `axes`: its x, y (poles) and z, right-handed. */
+/* An ellipsoid with half axes `radii`, closed, 2 * sides * (rings - 1) triangles; rings >= 2. `axes`: its x, y (poles) and z,
+ * right-handed. */
 void mesh_builder_ellipsoid(struct mesh_builder *b, struct dvec3 center, const struct dvec3 axes[3], const double radii[3],
                             unsigned rings, unsigned sides);
 
@@ -89,7 +90,8 @@ void mesh_builder_camera(struct mesh_builder *b, struct dvec3 eye, struct dvec3 
 /* Looks straight down from `height`, picture right = +x, picture up = -z, 2 * half_height high. */
 void mesh_builder_camera_above(struct mesh_builder *b, double height, double half_height);
 
-/* The ground, light and camera that the large models share: 12 x 12, a point light of 400 cd at (2.5, 5, 3), an eye at (0, 2.2, 4.8). */
+/* The ground, light and camera that the large models share: 12 x 12, a point light of 400 cd at (2.5, 5, 3), an eye at (0, 2.2,
+ * 4.8). */
 void mesh_builder_stage(struct mesh_builder *b);
 
 /* A fixed integer hash, and the same as a number in [0, 1). */

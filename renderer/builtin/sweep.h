@@ -1,5 +1,5 @@
-/* A closed surface swept along a curve: rings of vertices around a Catmull-Rom spline through control points, closed by one vertex at either
- * end, each vertex pushed outwards by a function of where it lies. */
+/* A closed surface swept along a curve: rings of vertices around a Catmull-Rom spline through control points, closed by one
+ * vertex at either end, each vertex pushed outwards by a function of where it lies. */
 #pragma once
 
 #include <stdint.h>

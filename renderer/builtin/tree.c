@@ -1,5 +1,5 @@
-/* A tree in full leaf, after the kind "tree" of the coverage shadow map paper (Li et al. 2017, table 2: 46,036 triangles): many small
- * leaves, each cut out as geometry, one over the other seen from the light. */
+/* A tree in full leaf, after the kind "tree" of the coverage shadow map paper (Li et al. 2017, table 2: 46,036 triangles): many
+ * small leaves, each cut out as geometry, one over the other seen from the light. */
 #include "builtin/scenes.h"
 
 #define LEVELS 4
