@@ -1,7 +1,7 @@
 #include "rational.h"
 
 #include <gmp.h>
-#include <string.h>
+#include <stdlib.h>
 
 struct qvec {
     mpq_t x[3];
@@ -32,28 +32,28 @@ static void qvec_minus(struct qvec *r, const struct qvec *a, const struct qvec *
         mpq_sub(r->x[i], a->x[i], b->x[i]);
 }
 
-static void qvec_times(struct qvec *r, const struct qvec *a, const struct qvec *b)
+/* Numbers that functions may use without making their own: allocating is what costs most. */
+struct scratch {
+    mpq_t left, right, value;
+    struct qvec to, edge, m, from;
+};
+
+static void qvec_times(struct scratch *s, struct qvec *r, const struct qvec *a, const struct qvec *b)
 {
-    mpq_t left, right;
-    mpq_inits(left, right, NULL);
     for (int i = 0; i < 3; i++) {
-        mpq_mul(left, a->x[(i + 1) % 3], b->x[(i + 2) % 3]);
-        mpq_mul(right, a->x[(i + 2) % 3], b->x[(i + 1) % 3]);
-        mpq_sub(r->x[i], left, right);
+        mpq_mul(s->left, a->x[(i + 1) % 3], b->x[(i + 2) % 3]);
+        mpq_mul(s->right, a->x[(i + 2) % 3], b->x[(i + 1) % 3]);
+        mpq_sub(r->x[i], s->left, s->right);
     }
-    mpq_clears(left, right, NULL);
 }
 
-static void qvec_inner(mpq_t r, const struct qvec *a, const struct qvec *b)
+static void qvec_inner(struct scratch *s, mpq_t r, const struct qvec *a, const struct qvec *b)
 {
-    mpq_t product;
-    mpq_init(product);
     mpq_set_si(r, 0, 1);
     for (int i = 0; i < 3; i++) {
-        mpq_mul(product, a->x[i], b->x[i]);
-        mpq_add(r, r, product);
+        mpq_mul(s->left, a->x[i], b->x[i]);
+        mpq_add(r, r, s->left);
     }
-    mpq_clear(product);
 }
 
 /* A drawn triangle. */
@@ -65,20 +65,23 @@ struct face {
 
 static bool counts(double x) { return x >= -1e18 && x <= 1e18; }
 
-/* False (and nothing to clear) for ids past the end and for triangles that are ignored. */
-static bool face_init(struct face *f, const struct scene *scene, uint32_t id)
+struct rational {
+    const struct scene *scene;
+    struct face *faces; /* in the order of ids, without those to be ignored */
+    size_t count;
+    struct scratch scratch;
+    struct qvec o, d, apex, point;
+    mpq_t t, best;
+};
+
+/* False when the triangle is to be ignored. */
+static bool face_init(struct scratch *s, struct face *f, const struct scene *scene, uint32_t instance, uint32_t index)
 {
-    struct qvec u, v;
-    f->id = id;
-    f->instance = 0;
-    for (uint32_t i = 0; i < scene->instance_count; i++) {
-        uint32_t first = scene->instances[i].first_triangle;
-        if (id >= first && id - first < scene->meshes[scene->instances[i].mesh].index_count / 3)
-            f->instance = i;
-    }
-    f->index = id - scene->instances[f->instance].first_triangle;
+    f->id = scene->instances[instance].first_triangle + index;
+    f->instance = instance;
+    f->index = index;
     for (unsigned k = 0; k < 3; k++) {
-        f->corner[k] = instance_vertex(scene, &scene->instances[f->instance], f->index, k);
+        f->corner[k] = instance_vertex(scene, &scene->instances[instance], index, k);
         if (!counts(f->corner[k].x) || !counts(f->corner[k].y) || !counts(f->corner[k].z))
             return false;
     }
@@ -87,21 +90,42 @@ static bool face_init(struct face *f, const struct scene *scene, uint32_t id)
         qvec_set(&f->q[k], f->corner[k]);
     }
     qvec_init(&f->normal);
-    qvec_init(&u);
-    qvec_init(&v);
-    qvec_minus(&u, &f->q[1], &f->q[0]);
-    qvec_minus(&v, &f->q[2], &f->q[0]);
-    qvec_times(&f->normal, &u, &v);
-    qvec_clear(&u);
-    qvec_clear(&v);
+    qvec_minus(&s->to, &f->q[1], &f->q[0]);
+    qvec_minus(&s->edge, &f->q[2], &f->q[0]);
+    qvec_times(s, &f->normal, &s->to, &s->edge);
     return true;
 }
 
-static void face_clear(struct face *f)
+struct rational *rational_create(const struct scene *scene)
 {
-    for (int k = 0; k < 3; k++)
-        qvec_clear(&f->q[k]);
-    qvec_clear(&f->normal);
+    struct rational *r = calloc(1, sizeof *r);
+    struct scratch *s = &r->scratch;
+    r->scene = scene;
+    r->faces = calloc(scene->drawn_triangle_count + 1, sizeof *r->faces);
+    mpq_inits(s->left, s->right, s->value, r->t, r->best, NULL);
+    struct qvec *vectors[] = {&s->to, &s->edge, &s->m, &s->from, &r->o, &r->d, &r->apex, &r->point};
+    for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++)
+        qvec_init(vectors[i]);
+    for (uint32_t i = 0; i < scene->instance_count; i++)
+        for (uint32_t k = 0; k < scene->meshes[scene->instances[i].mesh].index_count / 3; k++)
+            r->count += face_init(s, &r->faces[r->count], scene, i, k);
+    return r;
+}
+
+void rational_destroy(struct rational *r)
+{
+    struct scratch *s = &r->scratch;
+    for (size_t i = 0; i < r->count; i++) {
+        for (int k = 0; k < 3; k++)
+            qvec_clear(&r->faces[i].q[k]);
+        qvec_clear(&r->faces[i].normal);
+    }
+    struct qvec *vectors[] = {&s->to, &s->edge, &s->m, &s->from, &r->o, &r->d, &r->apex, &r->point};
+    for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++)
+        qvec_clear(vectors[i]);
+    mpq_clears(s->left, s->right, s->value, r->t, r->best, NULL);
+    free(r->faces);
+    free(r);
 }
 
 static const struct material *face_material(const struct scene *scene, const struct face *f)
@@ -110,47 +134,31 @@ static const struct material *face_material(const struct scene *scene, const str
 }
 
 /* "Crossing": the line's apex (a position, or with `far_away` a direction) and point. */
-static int passes(const struct qvec *apex, bool far_away, const struct qvec *point, const struct qvec *u, const struct qvec *v)
+static int passes(struct scratch *s, const struct qvec *apex, bool far_away, const struct qvec *point, const struct qvec *u,
+                  const struct qvec *v)
 {
-    struct qvec to, edge, m, from;
-    mpq_t value;
-    qvec_init(&to);
-    qvec_init(&edge);
-    qvec_init(&m);
-    qvec_init(&from);
-    mpq_init(value);
-    qvec_minus(&to, apex, u);
-    qvec_minus(&edge, v, u);
-    qvec_times(&m, far_away ? apex : &to, &edge);
-    qvec_minus(&from, point, u);
-    qvec_inner(value, &m, &from);
-    int sign = mpq_sgn(value);
+    qvec_minus(&s->to, apex, u);
+    qvec_minus(&s->edge, v, u);
+    qvec_times(s, &s->m, far_away ? apex : &s->to, &s->edge);
+    qvec_minus(&s->from, point, u);
+    qvec_inner(s, s->value, &s->m, &s->from);
+    int sign = mpq_sgn(s->value);
     for (int i = 0; sign == 0 && i < 3; i++)
-        sign = mpq_sgn(m.x[i]);
-    mpq_clear(value);
-    qvec_clear(&from);
-    qvec_clear(&m);
-    qvec_clear(&edge);
-    qvec_clear(&to);
+        sign = mpq_sgn(s->m.x[i]);
     return sign;
 }
 
-static bool crosses(const struct qvec *apex, bool far_away, const struct qvec *point, const struct face *f)
+static bool crosses(struct scratch *s, const struct qvec *apex, bool far_away, const struct qvec *point, const struct face *f)
 {
-    int ab = passes(apex, far_away, point, &f->q[0], &f->q[1]);
-    int bc = passes(apex, far_away, point, &f->q[1], &f->q[2]);
-    int ca = passes(apex, far_away, point, &f->q[2], &f->q[0]);
-    return ab != 0 && ab == bc && bc == ca;
+    int ab = passes(s, apex, far_away, point, &f->q[0], &f->q[1]);
+    int bc = passes(s, apex, far_away, point, &f->q[1], &f->q[2]);
+    return ab != 0 && ab == bc && ab == passes(s, apex, far_away, point, &f->q[2], &f->q[0]);
 }
 
-static int sign_with(const struct qvec *normal, const struct qvec *v)
+static int sign_with(struct scratch *s, const struct qvec *normal, const struct qvec *v)
 {
-    mpq_t value;
-    mpq_init(value);
-    qvec_inner(value, normal, v);
-    int sign = mpq_sgn(value);
-    mpq_clear(value);
-    return sign;
+    qvec_inner(s, s->value, normal, v);
+    return mpq_sgn(s->value);
 }
 
 /* "Holes", written out in plain doubles. */
@@ -183,21 +191,15 @@ static bool solid(const struct scene *scene, const struct face *f, struct dvec3 
 }
 
 /* t = N . (a - o) / N . d; false when N . d = 0. */
-static bool depth_of(mpq_t t, const struct face *f, const struct qvec *o, const struct qvec *d)
+static bool depth_of(struct scratch *s, mpq_t t, const struct face *f, const struct qvec *o, const struct qvec *d)
 {
-    struct qvec to;
-    mpq_t slope;
-    qvec_init(&to);
-    mpq_init(slope);
-    qvec_minus(&to, &f->q[0], o);
-    qvec_inner(t, &f->normal, &to);
-    qvec_inner(slope, &f->normal, d);
-    bool ok = mpq_sgn(slope) != 0;
-    if (ok)
-        mpq_div(t, t, slope);
-    mpq_clear(slope);
-    qvec_clear(&to);
-    return ok;
+    qvec_minus(&s->to, &f->q[0], o);
+    qvec_inner(s, t, &f->normal, &s->to);
+    qvec_inner(s, s->value, &f->normal, d);
+    if (mpq_sgn(s->value) == 0)
+        return false;
+    mpq_div(t, t, s->value);
+    return true;
 }
 
 static bool within(const mpq_t t, double near, double far)
@@ -214,43 +216,31 @@ static bool within(const mpq_t t, double near, double far)
     return ok;
 }
 
-static bool is_hidden(const struct scene *scene, const struct face *f, const struct qvec *d)
+static bool is_hidden(struct rational *r, const struct face *f)
 {
-    int slope = sign_with(&f->normal, d);
-    return !face_material(scene, f)->double_sided && (scene->instances[f->instance].mirrored ? slope < 0 : slope > 0);
+    int slope = sign_with(&r->scratch, &f->normal, &r->d);
+    return !face_material(r->scene, f)->double_sided && (r->scene->instances[f->instance].mirrored ? slope < 0 : slope > 0);
 }
 
-uint32_t rational_visible(const struct scene *scene, const struct view *view, double x, double y)
+uint32_t rational_visible(struct rational *r, const struct view *view, double x, double y)
 {
+    struct scratch *s = &r->scratch;
     struct dvec3 origin, direction;
-    struct qvec o, d, point;
-    mpq_t t, best;
     uint32_t found = SCENE_NONE;
     view_ray(view, x, y, &origin, &direction);
-    qvec_init(&o);
-    qvec_init(&d);
-    qvec_init(&point);
-    mpq_inits(t, best, NULL);
-    qvec_set(&o, origin);
-    qvec_set(&d, direction);
+    qvec_set(&r->o, origin);
+    qvec_set(&r->d, direction);
     for (int i = 0; i < 3; i++)
-        mpq_add(point.x[i], o.x[i], d.x[i]);
-    for (uint32_t id = 0; id < scene->drawn_triangle_count; id++) {
-        struct face f;
-        if (!face_init(&f, scene, id))
-            continue;
-        bool meets = view->orthographic ? crosses(&d, true, &o, &f) : crosses(&o, false, &point, &f);
-        if (meets && depth_of(t, &f, &o, &d) && within(t, view->near, view->far) && !is_hidden(scene, &f, &d) &&
-            solid(scene, &f, origin, direction) && (found == SCENE_NONE || mpq_cmp(t, best) < 0)) {
-            mpq_set(best, t);
-            found = id;
+        mpq_add(r->point.x[i], r->o.x[i], r->d.x[i]);
+    for (size_t i = 0; i < r->count; i++) {
+        const struct face *f = &r->faces[i];
+        bool meets = view->orthographic ? crosses(s, &r->d, true, &r->o, f) : crosses(s, &r->o, false, &r->point, f);
+        if (meets && depth_of(s, r->t, f, &r->o, &r->d) && within(r->t, view->near, view->far) && !is_hidden(r, f) &&
+            solid(r->scene, f, origin, direction) && (found == SCENE_NONE || mpq_cmp(r->t, r->best) < 0)) {
+            mpq_set(r->best, r->t);
+            found = f->id;
         }
-        face_clear(&f);
     }
-    mpq_clears(t, best, NULL);
-    qvec_clear(&point);
-    qvec_clear(&d);
-    qvec_clear(&o);
     return found;
 }
 
@@ -277,70 +267,51 @@ static bool reached(const struct light *light, struct dvec3 p)
 }
 
 /* Sign of N . (light - a) or N . (-l). */
-static int light_sign(const struct face *f, const struct qvec *light, bool far_away)
+static int light_sign(struct rational *r, const struct face *f, bool far_away)
 {
-    struct qvec to;
-    qvec_init(&to);
-    qvec_minus(&to, light, &f->q[0]);
-    int sign = sign_with(&f->normal, far_away ? light : &to);
-    qvec_clear(&to);
-    return sign;
+    qvec_minus(&r->scratch.to, &r->apex, &f->q[0]);
+    return sign_with(&r->scratch, &f->normal, far_away ? &r->apex : &r->scratch.to);
 }
 
-static bool shadowed(const struct scene *scene, uint32_t own, const struct qvec *point, struct dvec3 rounded, const struct light *light,
-                     const struct qvec *apex)
+static bool shadowed(struct rational *r, uint32_t own, struct dvec3 rounded, const struct light *light)
 {
-    bool far_away = light->kind == LIGHT_DIRECTIONAL, dark = false;
+    struct scratch *s = &r->scratch;
+    bool far_away = light->kind == LIGHT_DIRECTIONAL;
     struct dvec3 to = far_away ? dvec3(-light->direction.x, -light->direction.y, -light->direction.z)
                                : dvec3(light->position.x - rounded.x, light->position.y - rounded.y, light->position.z - rounded.z);
-    struct qvec from;
-    qvec_init(&from);
-    for (uint32_t id = 0; id < scene->drawn_triangle_count && !dark; id++) {
-        struct face f;
-        if (id == own || !face_init(&f, scene, id))
+    for (size_t i = 0; i < r->count; i++) {
+        const struct face *f = &r->faces[i];
+        if (f->id == own)
             continue;
-        qvec_minus(&from, point, &f.q[0]);
-        dark = sign_with(&f.normal, &from) * light_sign(&f, apex, far_away) < 0 && crosses(apex, far_away, point, &f) &&
-               solid(scene, &f, rounded, to);
-        face_clear(&f);
+        qvec_minus(&s->from, &r->point, &f->q[0]);
+        if (sign_with(s, &f->normal, &s->from) * light_sign(r, f, far_away) < 0 && crosses(s, &r->apex, far_away, &r->point, f) &&
+            solid(r->scene, f, rounded, to))
+            return true;
     }
-    qvec_clear(&from);
-    return dark;
+    return false;
 }
 
-enum rational_answer rational_light(const struct scene *scene, const struct view *view, const struct light *light, uint32_t id, double x,
-                                    double y)
+enum rational_answer rational_light(struct rational *r, const struct view *view, const struct light *light, uint32_t id, double x, double y)
 {
-    struct face f;
-    if (id == SCENE_NONE || !face_init(&f, scene, id))
+    const struct face *f = NULL;
+    for (size_t i = 0; i < r->count; i++)
+        if (r->faces[i].id == id)
+            f = &r->faces[i];
+    if (!f)
         return RATIONAL_NO_RECEIVER;
     struct dvec3 origin, direction;
-    struct qvec o, d, apex, point;
-    mpq_t t;
-    enum rational_answer answer = RATIONAL_NO_RECEIVER;
     bool far_away = light->kind == LIGHT_DIRECTIONAL;
     view_ray(view, x, y, &origin, &direction);
-    qvec_init(&o);
-    qvec_init(&d);
-    qvec_init(&apex);
-    qvec_init(&point);
-    mpq_init(t);
-    qvec_set(&o, origin);
-    qvec_set(&d, direction);
-    qvec_set(&apex, far_away ? dvec3(-light->direction.x, -light->direction.y, -light->direction.z) : light->position);
-    struct dvec3 rounded = rounded_point(&f, origin, direction);
-    if (depth_of(t, &f, &o, &d) && sign_with(&f.normal, &d) * light_sign(&f, &apex, far_away) < 0 && reached(light, rounded)) {
-        for (int i = 0; i < 3; i++) {
-            mpq_mul(point.x[i], d.x[i], t);
-            mpq_add(point.x[i], point.x[i], o.x[i]);
-        }
-        answer = shadowed(scene, id, &point, rounded, light, &apex) ? RATIONAL_SHADOWED : RATIONAL_LIT;
+    qvec_set(&r->o, origin);
+    qvec_set(&r->d, direction);
+    qvec_set(&r->apex, far_away ? dvec3(-light->direction.x, -light->direction.y, -light->direction.z) : light->position);
+    struct dvec3 rounded = rounded_point(f, origin, direction);
+    if (!depth_of(&r->scratch, r->t, f, &r->o, &r->d) ||
+        sign_with(&r->scratch, &f->normal, &r->d) * light_sign(r, f, far_away) >= 0 || !reached(light, rounded))
+        return RATIONAL_NO_RECEIVER;
+    for (int i = 0; i < 3; i++) {
+        mpq_mul(r->point.x[i], r->d.x[i], r->t);
+        mpq_add(r->point.x[i], r->point.x[i], r->o.x[i]);
     }
-    mpq_clear(t);
-    qvec_clear(&point);
-    qvec_clear(&apex);
-    qvec_clear(&d);
-    qvec_clear(&o);
-    face_clear(&f);
-    return answer;
+    return shadowed(r, id, rounded, light) ? RATIONAL_SHADOWED : RATIONAL_LIT;
 }

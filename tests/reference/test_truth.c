@@ -69,10 +69,12 @@ static void point_row(void *context, size_t y, unsigned worker)
     (void)worker;
     struct rows *rows = context;
     const struct setting *s = rows->setting;
+    struct rational *rational = rational_create(s->scene);
     for (uint32_t x = 0; x < s->view.width; x++) {
         size_t at = y * s->view.width + x;
-        rows->answers[at] = rational_light(s->scene, &s->view, &s->light, rows->ids[at], x + 0.5, (double)y + 0.5);
+        rows->answers[at] = rational_light(rational, &s->view, &s->light, rows->ids[at], x + 0.5, (double)y + 0.5);
     }
+    rational_destroy(rational);
 }
 
 static void check_point(const struct setting *s)
@@ -101,6 +103,7 @@ static void sample_row(void *context, size_t y, unsigned worker)
     (void)worker;
     struct rows *rows = context;
     const struct setting *s = rows->setting;
+    struct rational *rational = rational_create(s->scene);
     for (uint32_t x = 0; x < s->view.width; x++) {
         size_t at = y * s->view.width + x;
         uint32_t first = SCENE_NONE;
@@ -108,8 +111,8 @@ static void sample_row(void *context, size_t y, unsigned worker)
         rows->receivers[at] = rows->lit[at] = 0;
         for (unsigned i = 0; i < 32; i++) {
             double px = x + (double)view_samples32[i][0], py = (double)y + (double)view_samples32[i][1];
-            uint32_t id = rational_visible(s->scene, &s->view, px, py);
-            enum rational_answer answer = rational_light(s->scene, &s->view, &s->light, id, px, py);
+            uint32_t id = rational_visible(rational, &s->view, px, py);
+            enum rational_answer answer = rational_light(rational, &s->view, &s->light, id, px, py);
             rows->receivers[at] |= (uint32_t)(answer != RATIONAL_NO_RECEIVER) << i;
             rows->lit[at] |= (uint32_t)(answer == RATIONAL_LIT) << i;
             first = i ? first : id;
@@ -117,6 +120,7 @@ static void sample_row(void *context, size_t y, unsigned worker)
         }
         rows->one[at] = one && first != SCENE_NONE;
     }
+    rational_destroy(rational);
 }
 
 static void check_samples(const struct setting *s)
