@@ -61,12 +61,12 @@ void decode(void *context)
     const char *name = reader_for(d->data, d->size);
     if (!name)
         fail("%s is no PNG, JPEG or WebP image", d->what);
-    if (gltf::image_is_cut({d->data, d->size}))
-        fail("%s is cut short", d->what);
     OIIO::attribute("threads", 1);
     uint64_t width = 0, height = 0;
     if (gltf::find_image_size({d->data, d->size}, &width, &height))
         check_size(d->what, width, height);
+    if (gltf::image_is_cut({d->data, d->size}))
+        fail("%s is cut short", d->what);
     OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t *>(d->data), d->size);
     std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(name);
     OIIO::ImageSpec config, spec;
