@@ -278,7 +278,7 @@ bool gl_check_at(struct gl_context *gl, const char *where, struct error *err)
     gl->failed = true;
     while (glGetError() != GL_NO_ERROR)
         ;
-    log_error("%s: GL error 0x%04x", where, code);
+    log_warning("%s: GL error 0x%04x", where, code);
     if (code == GL_OUT_OF_MEMORY)
         return error_set(err, ERROR_TRY_AGAIN, NULL, "the GL device is out of memory (%s): use a smaller size", where);
     if (code == GL_CONTEXT_LOST)

@@ -88,7 +88,7 @@ static GLuint compile(GLenum stage, const char *name, const char *source, enum e
     glGetShaderInfoLog(shader, sizeof text, NULL, text);
     glDeleteShader(shader);
     log_numbered(source);
-    log_error("%s: %s", name, text);
+    log_warning("%s: %s", name, text);
     error_set(err, code, NULL, "shader %s does not compile: %.*s", name, (int)strcspn(text, "\n"), text);
     return 0;
 }
@@ -116,7 +116,7 @@ static GLuint link_sources(char *const sources[2], const struct gl_program *p, e
     char text[4096];
     glGetProgramInfoLog(id, sizeof text, NULL, text);
     glDeleteProgram(id);
-    log_error("%s + %s: %s", names[0], names[1] ? names[1] : "-", text);
+    log_warning("%s + %s: %s", names[0], names[1] ? names[1] : "-", text);
     error_set(err, code, NULL, "shaders %s and %s do not link: %.*s", names[0], names[1] ? names[1] : "-",
               (int)strcspn(text, "\n"), text);
     return 0;
@@ -190,7 +190,7 @@ bool gl_programs_reload(struct gl_programs *programs)
             glDeleteProgram(p->id);
             p->id = id;
         } else {
-            log_error("%s; the old program stays in use", err.message);
+            log_warning("%s; the old program stays in use", err.message);
         }
     }
     return true;
