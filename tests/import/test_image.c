@@ -143,7 +143,8 @@ static void absurd_sizes_are_refused(void **state)
         struct image image = {0};
         assert_false(image_decode(all[i].data, all[i].size, "picture", &image, &err));
         assert_int_equal(err.code, ERROR_DATA);
-        assert_non_null(strstr(err.message, "a side are accepted"));
+        if (!strstr(err.message, "a side are accepted"))
+            fail_msg("%s", err.message);
     }
     struct error err = {0};
     struct image image = {0};

@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <math.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -144,6 +145,25 @@ static void materials(void **state)
     scene_destroy(scene);
 }
 
+/* Quadratic time in the length of an array would take minutes here. */
+static void many_nodes_load_quickly(void **state)
+{
+    (void)state;
+    const size_t count = 200000;
+    char *members = malloc(3 * count + sizeof MESH + 40), *at = members;
+    assert_non_null(members);
+    at += sprintf(at, "\"nodes\":[{\"mesh\":0}");
+    for (size_t i = 1; i < count; i++, at += 3)
+        memcpy(at, ",{}", 3);
+    strcpy(at, "]," MESH);
+    clock_t start = clock();
+    struct scene *scene = make(members);
+    assert_true((double)(clock() - start) / CLOCKS_PER_SEC < 20);
+    assert_int_equal(scene->instance_count, 1);
+    scene_destroy(scene);
+    free(members);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -153,6 +173,7 @@ int main(void)
         cmocka_unit_test(lights),
         cmocka_unit_test(gpu_instancing),
         cmocka_unit_test(materials),
+        cmocka_unit_test(many_nodes_load_quickly),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
