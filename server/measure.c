@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "progress.h"
 #include "stage.h"
@@ -9,6 +10,7 @@
 static const double TURN_DEG = 0.25; /* of the lights for each timed frame */
 static const double PASS_SUM_TOLERANCE = 0.1;
 enum { PASS_FRAMES_MAX = 20 }; /* of the second run: medians settle long before */
+enum { PASS_RUNS_MAX = 3 };
 
 static int compare_doubles(const void *a, const void *b)
 {
@@ -98,12 +100,13 @@ static void pass_medians(struct run *run, struct measurement *out)
         out->pass_ms[p] = quantile(run->pass[p], run->frames, 0.5);
 }
 
-static bool passes_add_up(const struct measurement *m)
+/* How far the passes are from adding up to the frame, as a fraction of it. */
+static double passes_gap(const double *pass_ms, double frame_ms)
 {
     double sum = 0;
     for (int p = 0; p < PASS_COUNT; p++)
-        sum += m->pass_ms[p];
-    return fabs(sum - m->median_ms) <= PASS_SUM_TOLERANCE * m->median_ms;
+        sum += pass_ms[p];
+    return fabs(sum - frame_ms) / frame_ms;
 }
 
 static bool measure_passes(struct stage *stage, const struct measurement *first, struct progress *progress,
@@ -132,30 +135,40 @@ unsigned measure_default_frames(double frame_ms)
     return fit >= FRAMES_TIMED_DEFAULT ? FRAMES_TIMED_DEFAULT : fit < UNTIMED_FRAMES ? UNTIMED_FRAMES : (unsigned)fit;
 }
 
-bool measure_frames(struct stage *stage, unsigned frames, bool moving, struct progress *progress, struct measurement *out,
-                    struct error *err)
+static bool measure_times(struct stage *stage, struct progress *progress, struct measurement *out, struct error *err)
 {
     struct run run;
-    *out = (struct measurement){.frames = frames, .moving = moving};
-    bool good = run_start(&run, stage, frames, moving, err);
+    bool good = run_start(&run, stage, out->frames, out->moving, err);
     run.progress = progress;
     run.progress_share = 0.5;
     good = good && run_frames(&run, out, err);
     if (good) {
         pass_medians(&run, out);
-        out->min_ms = quantile(run.times, frames, 0);
-        out->median_ms = quantile(run.times, frames, 0.5);
-        out->p95_ms = quantile(run.times, frames, 0.95);
+        out->min_ms = quantile(run.times, run.frames, 0);
+        out->median_ms = quantile(run.times, run.frames, 0.5);
+        out->p95_ms = quantile(run.times, run.frames, 0.95);
     }
     run_finish(&run);
-    if (!good)
+    return good;
+}
+
+/* On a busy machine the second run may find other conditions than the first: then it is run again, and the run that comes closest to the
+ * first one's frame time is kept. */
+bool measure_frames(struct stage *stage, unsigned frames, bool moving, struct progress *progress, struct measurement *out,
+                    struct error *err)
+{
+    *out = (struct measurement){.frames = frames, .moving = moving};
+    if (!measure_times(stage, progress, out, err))
         return false;
-    if (!renderer_device(stage->renderer)->software && passes_add_up(out))
-        return true;
-    struct measurement finished = {0};
-    if (!measure_passes(stage, out, progress, &finished, err))
-        return false;
-    for (int p = 0; p < PASS_COUNT; p++)
-        out->pass_ms[p] = finished.pass_ms[p];
+    double gap = renderer_device(stage->renderer)->software ? INFINITY : passes_gap(out->pass_ms, out->median_ms);
+    for (int i = 0; i < PASS_RUNS_MAX && gap > PASS_SUM_TOLERANCE; i++) {
+        struct measurement finished = {0};
+        if (!measure_passes(stage, out, progress, &finished, err))
+            return false;
+        if (passes_gap(finished.pass_ms, out->median_ms) >= gap)
+            continue;
+        gap = passes_gap(finished.pass_ms, out->median_ms);
+        memcpy(out->pass_ms, finished.pass_ms, sizeof out->pass_ms);
+    }
     return true;
 }
