@@ -39,7 +39,7 @@ static bool run_camera(struct renderer *r, struct render_scene *s, const struct 
         return false;
     }
     mark(r, PASS_CAMERA, info);
-    bool ok = camera_receivers(&r->gbuffer, &s->draw, err);
+    bool ok = camera_surfaces(&r->gbuffer, &s->draw, err);
     mark(r, PASS_RECEIVERS, info);
     return ok;
 }
@@ -116,6 +116,8 @@ static bool resolve_lights(struct renderer *r, struct render_scene *s, const str
     for (unsigned i = 0; i < settings->light_count; i++) {
         gl_target_attach(&r->visibility_target, &r->visibility, NULL, i);
         gl_target_bind(&r->visibility_target, view->width, view->height);
+        static const GLfloat dark[4];
+        glClearNamedFramebufferfv(r->visibility_target.id, GL_COLOR, 0, dark);
         if (!bind_light(r, &inputs[i], settings->system->param_count, err) ||
             !settings->system->resolve(s->current[i]->state, &inputs[i], err))
             return false;
@@ -169,7 +171,7 @@ bool frame_render(struct renderer *r, struct render_scene *s, const struct rende
     struct view view = view_from_camera(&settings->camera, settings->width * aa_side, settings->height * aa_side);
     struct shadow_input inputs[RENDERER_LIGHTS_MAX];
     gl_timer_begin(&r->timer, settings->finish_each_pass);
-    bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, (unsigned)settings->light_count, err) &&
+    bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, err) &&
               run_camera(r, s, settings, info, err) && prepare_lights(r, s, settings, inputs, info, err) &&
               resolve_lights(r, s, settings, inputs, info, err) && run_lighting(r, s, settings, aa_side, info, err);
     if (ok)

@@ -25,9 +25,10 @@ typedef uint32_t uvec4[4];
 #define UNIT_TEXTURES 7       /* RGBA32UI: first texel, width | height << 16, wrap_s | wrap_t << 8 | nearest << 16, levels */
 #define UNIT_TEXELS 8         /* R32UI: RGBA8, level after level */
 #define UNIT_IDS 9            /* R32UI: drawn triangle id, NO_TRIANGLE: background */
-#define UNIT_RECEIVERS 10     /* RGBA32F: unit geometric normal turned to the eye, depth along the view's axis (0: background) */
+#define UNIT_PIXELS 10        /* RGBA32UI: struct pixel (pixel.glsl) */
 #define UNIT_VISIBILITY 11    /* R32F array, a layer a light */
 #define UNIT_SHADOW_MAP 12    /* D32F array, a layer a map */
+#define UNIT_EMISSION 14      /* RGBA16F: emitted radiance, occlusion (-1: unlit) */
 #define UNIT_PICTURE 13       /* RGBA32F: picture before the last step */
 
 #define NO_TRIANGLE 0xffffffffu
@@ -56,7 +57,7 @@ BLOCK(view_block, 0)
     vec4 ray_direction, ray_direction_dx, ray_direction_dy;
     vec4 view_forward; /* w: size of a pixel at depth 1 (perspective) or anywhere (orthographic) */
     vec4 view_clip;    /* near, far (0: none), 1 if orthographic, unused */
-    uvec4 view_counts; /* instances, steps of a search among them, light count, unused */
+    uvec4 view_counts; /* instances, steps of a search among them, unused */
 };
 
 /* What the rasterizer draws from: a camera's or a light map's view. */
@@ -80,7 +81,7 @@ BLOCK(maps_block, 3)
 {
     vec4 map_rows[3 * MAPS_MAX];
     vec4 map_scale[MAPS_MAX];
-    vec4 map_depth[MAPS_MAX]; /* near, far, 1 if orthographic, world size of a texel (at depth 1 if perspective) */
+    vec4 map_depth[MAPS_MAX]; /* near, far, unused, world size of a texel (at depth 1 if perspective) */
     uvec4 map_counts;         /* maps, side in texels, unused, unused */
 };
 
@@ -94,11 +95,11 @@ BLOCK(params_block, 4)
 BLOCK(lights_block, 5)
 {
     vec4 lights_position[LIGHTS_MAX];  /* relative; w: LIGHT_KIND_ */
-    vec4 lights_direction[LIGHTS_MAX]; /* unit; w: range, 0: none */
+    vec4 lights_direction[LIGHTS_MAX]; /* unit; w: 1 / range^2, 0: none */
     vec4 lights_color[LIGHTS_MAX];     /* colour times intensity */
     vec4 lights_cone[LIGHTS_MAX];      /* KHR_lights_punctual: angular scale, angular offset */
     vec4 picture;                      /* exposure factor, ambient radiance, samples a side (aa), unused */
-    vec4 background;                   /* linear, as shown */
+    vec4 background;                   /* as shown */
 };
 
 #endif

@@ -1,4 +1,4 @@
-/* The mean of aa x aa samples, in linear light; then as shown. */
+/* The mean of aa x aa samples, in linear light; then as shown, over the background. */
 #include "blocks.h"
 #include "tonemap.glsl"
 
@@ -9,9 +9,9 @@ void main()
 {
     int n = int(picture.z);
     ivec2 first = ivec2(gl_FragCoord.xy) * n;
-    vec3 sum = vec3(0);
+    vec4 sum = vec4(0);
     for (int y = 0; y < n; y++)
         for (int x = 0; x < n; x++)
-            sum += texelFetch(samples, first + ivec2(x, y), 0).rgb;
-    color = vec4(display_color(sum / float(n * n)), 1);
+            sum += texelFetch(samples, first + ivec2(x, y), 0);
+    color = vec4(mix(background.rgb, display_color(sum.rgb / max(sum.w, 1.0)), sum.w / float(n * n)), 1);
 }

@@ -9,19 +9,13 @@ const int BIAS = 2, SLOPE = 3, KERNEL = 4;
 void main()
 {
     Receiver r;
-    visibility = 0.0;
-    if (receiver_at(ivec2(gl_FragCoord.xy), r)) {
-        MapPoint m = map_point(r.point);
-        if (m.layer < 0) {
-            visibility = 1.0;
-        } else {
-            float bias = map_bias(r, m, PARAM(BIAS), PARAM(SLOPE));
-            int kernel = int(PARAM(KERNEL)), reach = kernel / 2, last = int(map_counts.y) - 1;
-            float sum = 0.0;
-            for (int y = -reach; y <= reach; y++)
-                for (int x = -reach; x <= reach; x++)
-                    sum += map_lit(m, clamp(ivec2(m.texel) + ivec2(x, y), ivec2(0), ivec2(last)), bias);
-            visibility = sum / float(kernel * kernel);
-        }
-    }
+    bool receives = receiver_at(ivec2(gl_FragCoord.xy), r);
+    MapPoint m = map_point(r.point);
+    bool sampled = receives && m.layer >= 0;
+    int kernel = int(PARAM(KERNEL)), reach = kernel / 2, last = int(map_counts.y) - 1;
+    float depth = m.depth - map_bias(r, m, PARAM(BIAS), PARAM(SLOPE)), sum = 0.0;
+    for (int y = -reach; y <= (sampled ? reach : -reach - 1); y++)
+        for (int x = -reach; x <= reach; x++)
+            sum += map_lit(m, clamp(ivec2(m.texel) + ivec2(x, y), ivec2(0), ivec2(last)), depth);
+    visibility = !receives ? 0.0 : m.layer < 0 ? 1.0 : sum / float(kernel * kernel);
 }

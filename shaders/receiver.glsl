@@ -1,7 +1,7 @@
-/* The pixel's receiver for the light at hand: what every shadow system starts from. */
-#include "blocks.h"
+/* The pixel's receiver for the light at hand: what every shadow system starts from. LIGHT: LIGHT_KIND_ of it. */
+#include "pixel.glsl"
 
-layout(binding = UNIT_RECEIVERS) uniform sampler2D receivers;
+layout(binding = UNIT_PIXELS) uniform usampler2D pixels;
 
 struct Receiver {
     vec3 point;     /* relative */
@@ -14,21 +14,23 @@ struct Receiver {
 /* False: no surface, or it faces away from the light, or lies outside its cone or range; visibility is 0 there. */
 bool receiver_at(ivec2 pixel, out Receiver r)
 {
-    vec4 texel = texelFetch(receivers, pixel, 0);
-    vec3 origin = ray_origin.xyz + float(pixel.x) * ray_origin_dx.xyz + float(pixel.y) * ray_origin_dy.xyz;
-    vec3 direction = ray_direction.xyz + float(pixel.x) * ray_direction_dx.xyz + float(pixel.y) * ray_direction_dy.xyz;
-    r.point = origin + texel.w * direction;
-    r.normal = texel.xyz;
-    bool inside = texel.w > 0.0;
-    if (light_position.w == float(LIGHT_KIND_DIRECTIONAL)) {
+    uvec4 p = texelFetch(pixels, pixel, 0);
+    float depth = pixel_depth(p);
+    vec3 origin, direction;
+    pixel_ray(pixel, origin, direction);
+    r.point = origin + depth * direction;
+    r.normal = pixel_geometric(p);
+    bool inside = depth > 0.0;
+    if (LIGHT == LIGHT_KIND_DIRECTIONAL) {
         r.to_light = -light_direction.xyz;
         r.distance = 0.0;
     } else {
         vec3 v = light_position.xyz - r.point;
-        r.distance = length(v);
-        r.to_light = v / max(r.distance, 1e-30);
+        float d2 = dot(v, v), inverse = inversesqrt(max(d2, 1e-37));
+        r.distance = d2 * inverse;
+        r.to_light = v * inverse;
         inside = inside && (light_direction.w == 0.0 || r.distance <= light_direction.w);
-        if (light_position.w == float(LIGHT_KIND_SPOT))
+        if (LIGHT == LIGHT_KIND_SPOT)
             inside = inside && -dot(r.to_light, light_direction.xyz) >= light_cone.x;
     }
     r.cosine = dot(r.normal, r.to_light);

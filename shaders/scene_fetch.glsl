@@ -30,13 +30,6 @@ uint instance_of(uint id)
     return low;
 }
 
-vec3 relative_point(uint instance, vec3 p)
-{
-    int row = int(instance) * 3;
-    vec4 p1 = vec4(p, 1);
-    return vec3(dot(texelFetch(rows, row), p1), dot(texelFetch(rows, row + 1), p1), dot(texelFetch(rows, row + 2), p1));
-}
-
 Triangle triangle_at(uint id)
 {
     Triangle t;
@@ -55,10 +48,4 @@ Triangle triangle_at(uint id)
     t.c = vec3(dot(r0, pc), dot(r1, pc), dot(r2, pc));
     t.normal = uvec3(a.w, b.w, c.w);
     return t;
-}
-
-void view_pixel_ray(ivec2 pixel, out vec3 origin, out vec3 direction)
-{
-    origin = ray_origin.xyz + float(pixel.x) * ray_origin_dx.xyz + float(pixel.y) * ray_origin_dy.xyz;
-    direction = ray_direction.xyz + float(pixel.x) * ray_direction_dx.xyz + float(pixel.y) * ray_direction_dy.xyz;
 }

@@ -9,9 +9,8 @@ const int BIAS = 2, SLOPE = 3;
 void main()
 {
     Receiver r;
-    visibility = 0.0;
-    if (receiver_at(ivec2(gl_FragCoord.xy), r)) {
-        MapPoint m = map_point(r.point);
-        visibility = m.layer < 0 ? 1.0 : map_lit(m, ivec2(m.texel), map_bias(r, m, PARAM(BIAS), PARAM(SLOPE)));
-    }
+    bool receives = receiver_at(ivec2(gl_FragCoord.xy), r);
+    MapPoint m = map_point(r.point);
+    float lit = map_lit(m, ivec2(m.texel), m.depth - map_bias(r, m, PARAM(BIAS), PARAM(SLOPE)));
+    visibility = !receives ? 0.0 : m.layer < 0 ? 1.0 : lit;
 }

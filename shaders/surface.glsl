@@ -1,7 +1,17 @@
-/* The surface at a pixel, from ids: attributes by barycentrics, textures by hand (materials vary from pixel to pixel). */
+/* The surface that a ray meets on a triangle, by the triangle's id. */
+#include "pixel.glsl"
 #include "scene_fetch.glsl"
-#include "brdf.glsl"
 #include "tonemap.glsl"
+
+struct Surface {
+    vec3 geometric;   /* unit, turned to the eye */
+    float depth;      /* along the ray */
+    vec3 normal;      /* shading, unit, on the geometric normal's side */
+    vec3 base_color;
+    vec3 emissive;
+    float metallic, roughness, occlusion;
+    bool unlit;
+};
 
 #ifdef TEXTURES
 #include "holes.glsl"
@@ -13,14 +23,7 @@ layout(binding = UNIT_MATERIALS) uniform samplerBuffer materials;
 layout(binding = UNIT_COLORS) uniform samplerBuffer color_texels;
 #endif
 
-vec3 unpack_normal(uint bits)
-{
-    vec2 e = unpackSnorm2x16(bits);
-    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-    float t = max(-n.z, 0.0);
-    n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
-    return n;
-}
+vec3 unpack_normal(uint bits) { return octahedral_unfold(unpackSnorm2x16(bits)); }
 
 /* Barycentrics of p in the plane of the triangle, weights of b and c. */
 vec2 barycentrics(Triangle t, vec3 p)
@@ -81,16 +84,19 @@ vec3 mapped_normal(vec3 n, vec3 texel, float scale, vec3 tangent, vec3 bitangent
 }
 #endif
 
-Surface surface_at(uint id, vec3 point, vec3 to_eye, vec4 receiver)
+Surface surface_at(uint id, vec3 origin, vec3 direction)
 {
     Triangle t = triangle_at(id);
+    Surface s;
+    vec3 across = cross(t.b - t.a, t.c - t.a);
+    float facing = dot(across, direction);
+    s.depth = dot(across, t.a - origin) / facing;
+    s.geometric = normalize(facing > 0.0 ? -across : across);
+    vec3 point = origin + s.depth * direction;
     vec2 w = barycentrics(t, point);
     vec3 weights = vec3(1.0 - w.x - w.y, w);
     int texel = int(t.material) * MATERIAL_TEXELS;
     vec4 base = texelFetch(materials, texel), factors = texelFetch(materials, texel + 1), emissive = texelFetch(materials, texel + 2);
-    Surface s;
-    s.to_eye = to_eye;
-    s.geometric = receiver.xyz;
     vec3 n = mat3(unpack_normal(t.normal.x), unpack_normal(t.normal.y), unpack_normal(t.normal.z)) * weights;
     n = normalize(mesh_normal_to_relative(t.instance, n));
     s.normal = dot(n, s.geometric) < 0.0 ? -n : n;
@@ -111,9 +117,9 @@ Surface surface_at(uint id, vec3 point, vec3 to_eye, vec4 receiver)
     vec4 uv = ua * weights.x + ub * weights.y + uc * weights.z;
     vec2 e0 = ub.xy - ua.xy, e1 = uc.xy - ua.xy;
     vec3 p0 = t.b - t.a, p1 = t.c - t.a;
-    float pixel = view_forward.w * (view_clip.z == 0.0 ? receiver.w : 1.0);
+    float pixel = view_forward.w * (view_clip.z == 0.0 ? s.depth : 1.0);
     float uv_area = e0.x * e1.y - e0.y * e1.x;
-    float density = abs(uv_area) / max(length(cross(p0, p1)), 1e-30) * pixel * pixel / max(abs(dot(s.geometric, to_eye)), 0.25);
+    float density = abs(uv_area) / max(length(cross(p0, p1)), 1e-30) * pixel * pixel / max(abs(dot(s.geometric, normalize(direction))), 0.25);
     s.base_color *= linear_from_srgb(sample_use(t.material, MATERIAL_BASE_COLOR, uv, density, vec4(1)).rgb);
     vec4 mr = sample_use(t.material, MATERIAL_METALLIC_ROUGHNESS, uv, density, vec4(1));
     s.metallic *= mr.b;

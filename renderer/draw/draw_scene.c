@@ -86,7 +86,6 @@ static bool upload_instances(struct draw_scene *d, struct error *err)
         packed[i][2] = mesh->material;
         packed[i][3] = instance->mirrored ? INSTANCE_MIRRORED : 0;
         numbers[i] = i;
-        d->has_holes |= material_has_holes(&s->materials[mesh->material]);
     }
     ok = ok ? gl_buffer_set(&d->instances, d->gl, packed, s->instance_count * sizeof *packed, GL_RGBA32UI, err) &&
                   gl_buffer_set(&d->instance_numbers, d->gl, numbers, s->instance_count * sizeof *numbers, 0, err)
@@ -146,6 +145,23 @@ static bool upload_textures(struct draw_scene *d, struct error *err)
     return ok;
 }
 
+static bool emits(const struct material *m)
+{
+    return m->unlit || m->emissive[0] > 0 || m->emissive[1] > 0 || m->emissive[2] > 0 || m->occlusion_texture.texture != SCENE_NONE;
+}
+
+static void classify(struct draw_scene *d)
+{
+    const struct scene *s = d->scene;
+    d->plain = true;
+    for (size_t i = 0; i < s->material_count; i++) {
+        const struct material *m = &s->materials[i];
+        d->has_emission |= emits(m);
+        d->plain &= !emits(m) && m->base_color_texture.texture == SCENE_NONE && m->normal_texture.texture == SCENE_NONE &&
+                    m->metallic_roughness_texture.texture == SCENE_NONE;
+    }
+}
+
 static void make_vertex_array(struct draw_scene *d)
 {
     glCreateVertexArrays(1, &d->vertex_array);
@@ -179,6 +195,7 @@ bool draw_scene_init(struct draw_scene *d, struct gl_context *gl, const struct s
         draw_scene_finish(d);
         return false;
     }
+    classify(d);
     make_vertex_array(d);
     d->bytes = total_bytes(d);
     return gl_check(gl, err);

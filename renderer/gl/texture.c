@@ -79,9 +79,18 @@ void gl_target_attach(struct gl_target *target, const struct gl_texture *color, 
     if (!target->id)
         glCreateFramebuffers(1, &target->id);
     attach(target->id, GL_COLOR_ATTACHMENT0, color, layer);
+    attach(target->id, GL_COLOR_ATTACHMENT1, NULL, 0);
     attach(target->id, GL_DEPTH_ATTACHMENT, depth, layer);
     glNamedFramebufferDrawBuffer(target->id, color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
     glNamedFramebufferReadBuffer(target->id, color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
+}
+
+void gl_target_attach_two(struct gl_target *target, const struct gl_texture *first, const struct gl_texture *second)
+{
+    static const GLenum both[2] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    gl_target_attach(target, first, NULL, 0);
+    attach(target->id, GL_COLOR_ATTACHMENT1, second, 0);
+    glNamedFramebufferDrawBuffers(target->id, second ? 2 : 1, both);
 }
 
 void gl_target_bind(const struct gl_target *target, uint32_t width, uint32_t height)

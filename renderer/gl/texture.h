@@ -33,9 +33,10 @@ struct gl_target {
 /* `color` and `depth` may be NULL, not both; `layer` counts in both unless they are flat. Remembers nothing: attach again after a texture was
  * remade. */
 void gl_target_attach(struct gl_target *target, const struct gl_texture *color, const struct gl_texture *depth, uint32_t layer);
+/* Two colours, both flat, no depth; `second` may be NULL. */
+void gl_target_attach_two(struct gl_target *target, const struct gl_texture *first, const struct gl_texture *second);
 void gl_target_bind(const struct gl_target *target, uint32_t width, uint32_t height);
 void gl_target_finish(struct gl_target *target);
 
 /* Three vertices that cover the viewport (full_screen.vert). */
-struct gl_context;
 void gl_draw_full_screen(void);

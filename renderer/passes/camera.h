@@ -10,11 +10,11 @@ struct gbuffer;
 struct job_pool;
 struct tracer;
 
-/* Fills ids by rasterizing. Receivers are left to camera_receivers(). */
+/* Fills ids by rasterizing. */
 bool camera_rasterize(struct gbuffer *g, struct draw_scene *scene, struct error *err);
 
-/* Fills ids and receivers by tracing. */
+/* Fills ids by tracing, and the pixels too where the scene is plain (draw_scene.h). */
 bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct tracer *tracer, struct job_pool *pool, struct error *err);
 
-/* Fills receivers from ids; nothing to do after camera_trace(). */
-bool camera_receivers(struct gbuffer *g, struct draw_scene *scene, struct error *err);
+/* Fills pixels and emission from ids, unless they are there already. */
+bool camera_surfaces(struct gbuffer *g, struct draw_scene *scene, struct error *err);

@@ -8,6 +8,7 @@
 #include "blocks.h"
 #include "draw/draw_scene.h"
 #include "gl/context.h"
+#include "scene/pixel.h"
 
 static void put(vec4 out, struct dvec3 v, double w)
 {
@@ -25,7 +26,7 @@ static uint32_t search_steps(size_t count)
     return steps;
 }
 
-static bool upload_view(struct gbuffer *g, struct draw_scene *scene, unsigned light_count, struct error *err)
+static bool upload_view(struct gbuffer *g, struct draw_scene *scene, struct error *err)
 {
     const struct view *v = &g->view.view;
     struct dvec3 o, d, ox, dx, oy, dy;
@@ -42,16 +43,17 @@ static bool upload_view(struct gbuffer *g, struct draw_scene *scene, unsigned li
     put(block.ray_direction_dy, dvec3_scale(dvec3_sub(dy, d), h), 0);
     put(block.view_forward, v->forward, (v->top - v->bottom) * h);
     put(block.view_clip, dvec3(v->near, isinf(v->far) ? 0 : v->far, v->orthographic), 0);
-    uvec4 counts = {(uint32_t)scene->scene->instance_count, search_steps(scene->scene->instance_count), light_count, 0};
+    uvec4 counts = {(uint32_t)scene->scene->instance_count, search_steps(scene->scene->instance_count), 0, 0};
     memcpy(block.view_counts, counts, sizeof counts);
     return gl_buffer_set(&g->view_block, scene->gl, &block, sizeof block, 0, err);
 }
 
-bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, unsigned light_count, struct error *err)
+bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, struct error *err)
 {
     return gl_texture_size(&g->ids, scene->gl, GL_R32UI, view->width, view->height, err) &&
-           gl_texture_size(&g->receivers, scene->gl, GL_RGBA32F, view->width, view->height, err) &&
-           draw_view_set(&g->view, scene, view, err) && upload_view(g, scene, light_count, err);
+           gl_texture_size(&g->pixels, scene->gl, GL_RGBA32UI, view->width, view->height, err) &&
+           (!scene->has_emission || gl_texture_size(&g->emission, scene->gl, GL_RGBA16F, view->width, view->height, err)) &&
+           draw_view_set(&g->view, scene, view, err) && upload_view(g, scene, err);
 }
 
 void gbuffer_finish(struct gbuffer *g)
@@ -59,11 +61,13 @@ void gbuffer_finish(struct gbuffer *g)
     draw_view_finish(&g->view);
     gl_buffer_finish(&g->view_block);
     gl_texture_finish(&g->ids);
-    gl_texture_finish(&g->receivers);
+    gl_texture_finish(&g->pixels);
+    gl_texture_finish(&g->emission);
     gl_texture_finish(&g->depth);
+    tiles_finish(&g->tiles);
     gl_target_finish(&g->target);
     free(g->cpu_ids);
-    free(g->cpu_receivers);
+    free(g->cpu_pixels);
     memset(g, 0, sizeof *g);
 }
 
@@ -73,7 +77,17 @@ void gbuffer_bind(const struct gbuffer *g, const struct draw_scene *scene)
     gl_buffer_bind_texture(&g->view.rows, UNIT_ROWS);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, g->view_block.id);
     gl_texture_bind(&g->ids, UNIT_IDS);
-    gl_texture_bind(&g->receivers, UNIT_RECEIVERS);
+    gl_texture_bind(&g->pixels, UNIT_PIXELS);
+    gl_texture_bind(&g->emission, UNIT_EMISSION);
+}
+
+bool gbuffer_need_ids(struct gbuffer *g, struct gl_context *gl, struct error *err)
+{
+    if (!g->ids_uploaded)
+        glTextureSubImage2D(g->ids.id, 0, 0, 0, (GLsizei)g->ids.width, (GLsizei)g->ids.height, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                            g->cpu_ids);
+    g->ids_uploaded = true;
+    return gl_check(gl, err);
 }
 
 const uint32_t *gbuffer_read_ids(struct gbuffer *g, struct gl_context *gl, struct error *err)
@@ -87,7 +101,7 @@ const uint32_t *gbuffer_read_ids(struct gbuffer *g, struct gl_context *gl, struc
         return NULL;
     }
     g->cpu_ids = ids;
-    g->cpu_pixels = 0;
+    g->cpu_room = 0;
     glGetTextureImage(g->ids.id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, (GLsizei)(pixels * sizeof *ids), ids);
     return gl_check(gl, err) ? ids : NULL;
 }

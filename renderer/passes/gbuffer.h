@@ -1,5 +1,5 @@
-/* What the camera sees, pixel by pixel: ids and receivers. Product of the camera pass, whichever producer ran; everything behind it sees only
- * this. */
+/* What the camera sees, pixel by pixel: product of the camera pass, whichever producer ran. The id names the triangle; the pixel
+ * (scene/pixel.h) is what that triangle says at the pixel's centre. Everything behind sees only this. */
 #pragma once
 
 #include <stdbool.h>
@@ -9,33 +9,40 @@
 #include "draw/draw_view.h"
 #include "gl/buffer.h"
 #include "gl/texture.h"
+#include "passes/tiles.h"
 #include "scene/view.h"
 
 struct draw_scene;
 struct error;
 struct gl_context;
-struct job_pool;
-struct tracer;
+struct pixel;
 
 struct gbuffer {
     struct draw_view view;         /* the camera */
     struct gl_buffer view_block;
-    struct gl_texture ids;         /* R32UI */
-    struct gl_texture receivers;   /* RGBA32F */
+    struct gl_texture ids;         /* R32UI; of a traced picture only after gbuffer_need_ids() */
+    struct gl_texture pixels;      /* RGBA32UI: struct pixel */
+    struct gl_texture emission;    /* RGBA16F; made for scenes that have some */
     struct gl_texture depth;       /* D32F; made when rasterizing */
+    struct tiles tiles;            /* where there are surfaces; full-screen passes draw these */
     struct gl_target target;
     uint32_t *cpu_ids;             /* width * height; valid if traced, else filled on request */
-    float *cpu_receivers;          /* width * height * 4; made when tracing */
-    size_t cpu_pixels;             /* what these two have room for */
+    struct pixel *cpu_pixels;      /* width * height; made when tracing */
+    size_t cpu_room;               /* pixels that these two have room for */
     bool traced;                   /* the last picture's producer */
+    bool ids_uploaded;             /* ids is the last picture's */
+    bool pixels_done;              /* pixels is the last picture's */
 };
 
 /* Sizes everything for `view` and uploads its blocks. */
-bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, unsigned light_count, struct error *err);
+bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, struct error *err);
 void gbuffer_finish(struct gbuffer *g);
 
-/* Binds view block, ids, receivers, rows and the scene for a full-screen pass. */
+/* Binds view block, ids, pixels, emission, rows and the scene for a full-screen pass. */
 void gbuffer_bind(const struct gbuffer *g, const struct draw_scene *scene);
+
+/* Makes ids valid on the GPU. */
+bool gbuffer_need_ids(struct gbuffer *g, struct gl_context *gl, struct error *err);
 
 /* The ids in CPU memory, reading them back (and waiting) if they were rasterized. NULL on error. */
 const uint32_t *gbuffer_read_ids(struct gbuffer *g, struct gl_context *gl, struct error *err);

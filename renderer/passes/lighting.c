@@ -45,6 +45,13 @@ static void put_cone(vec4 out, const struct light *l)
     put(out, dvec3(scale, -cos(l->outer) * scale, 0), 0);
 }
 
+/* A neutral dark grey behind everything, as shown: no exposure, no tone curve. */
+static const float *background_of(const struct lighting_input *in)
+{
+    static const float linear[4] = {0.012f, 0.013f, 0.015f, 1}, srgb[4] = {0.112f, 0.117f, 0.126f, 1};
+    return in->display == LIGHTING_LINEAR ? linear : srgb;
+}
+
 static bool upload_block(struct lighting *out, const struct lighting_input *in, struct error *err)
 {
     struct lights_block block = {0};
@@ -52,24 +59,32 @@ static bool upload_block(struct lighting *out, const struct lighting_input *in, 
     for (size_t i = 0; i < in->light_count; i++) {
         const struct light *l = &in->lights[i];
         put(block.lights_position[i], dvec3_sub(l->position, eye), l->kind);
-        put(block.lights_direction[i], l->direction, l->kind == LIGHT_DIRECTIONAL ? 0 : l->range);
+        put(block.lights_direction[i], l->direction, l->kind != LIGHT_DIRECTIONAL && l->range > 0 ? 1 / (l->range * l->range) : 0);
         put(block.lights_color[i], dvec3_scale(dvec3_from_float(l->color), l->intensity), 0);
         put_cone(block.lights_cone[i], l);
     }
     double unit = dbox_radius(&in->scene->scene->bounds);
     put(block.picture, dvec3(in->exposure, in->ambient, in->aa_side), unit > 0 ? unit : 1);
-    /* A neutral dark grey behind everything. */
-    put(block.background, dvec3(0.012, 0.013, 0.015), 0);
+    memcpy(block.background, background_of(in), sizeof block.background);
     return gl_buffer_set(&out->block, in->scene->gl, &block, sizeof block, 0, err);
+}
+
+/* What all lights are; -1 if they differ. */
+static int common_kind(const struct lighting_input *in)
+{
+    for (size_t i = 1; i < in->light_count; i++)
+        if (in->lights[i].kind != in->lights[0].kind)
+            return -1;
+    return in->light_count ? (int)in->lights[0].kind : -1;
 }
 
 static struct gl_program *lighting_program(const struct lighting_input *in, struct error *err)
 {
     char defines[160];
-    const struct scene *s = in->scene->scene;
-    snprintf(defines, sizeof defines, "SHOW %d\nDISPLAY %d\n%s%s%s", in->show, in->display,
-             in->aa_side > 1 ? "RESOLVE_LATER\n" : "", s->texture_count ? "TEXTURES\n" : "", s->color_count ? "COLORS\n" : "");
-    return gl_programs_get(in->scene->gl->programs, "full_screen.vert", "lighting.frag", defines, err);
+    bool colors = in->show == LIGHTING_SHADED || in->show == LIGHTING_VISIBILITY;
+    snprintf(defines, sizeof defines, "SHOW %d\nDISPLAY %d\nLIGHTS %zu\nKINDS %d\nRESOLVE_LATER %d\n%s", in->show, colors ? in->display : LIGHTING_LINEAR,
+             in->light_count, common_kind(in), in->aa_side > 1, in->scene->has_emission ? "EMISSION\n" : "");
+    return gl_programs_get(in->scene->gl->programs, "tiles.vert", "lighting.frag", defines, err);
 }
 
 static bool downsample(struct lighting *l, const struct lighting_input *in, struct error *err)
@@ -82,6 +97,7 @@ static bool downsample(struct lighting *l, const struct lighting_input *in, stru
     gl_target_attach(&l->target, &l->result, NULL, 0);
     gl_target_bind(&l->target, l->result.width, l->result.height);
     gl_program_use(program);
+    glBindVertexArray(in->scene->vertex_array);
     gl_texture_bind(&l->samples, UNIT_PICTURE);
     gl_draw_full_screen();
     return true;
@@ -91,6 +107,7 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
 {
     struct gl_context *gl = in->scene->gl;
     uint32_t width = in->gbuffer->ids.width, height = in->gbuffer->ids.height;
+    static const float nothing[4];
     bool many = in->aa_side > 1;
     GLenum format = in->display == LIGHTING_LINEAR ? GL_RGBA32F : GL_RGBA8;
     if (!gl_texture_size(&l->result, gl, format, width / in->aa_side, height / in->aa_side, err) ||
@@ -99,14 +116,16 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
     struct gl_program *program = lighting_program(in, err);
     if (!program)
         return false;
+    if (in->show == LIGHTING_ID && !gbuffer_need_ids(in->gbuffer, gl, err))
+        return false;
     gl_target_attach(&l->target, many ? &l->samples : &l->result, NULL, 0);
     gl_target_bind(&l->target, width, height);
     gl_program_use(program);
-    glBindVertexArray(in->scene->vertex_array);
     gbuffer_bind(in->gbuffer, in->scene);
     gl_texture_bind(in->visibility, UNIT_VISIBILITY);
     glBindBufferBase(GL_UNIFORM_BUFFER, 5, l->block.id);
-    gl_draw_full_screen();
+    glClearNamedFramebufferfv(l->target.id, GL_COLOR, 0, many ? nothing : background_of(in));
+    tiles_draw(&in->gbuffer->tiles);
     return (!many || downsample(l, in, err)) && gl_check(gl, err);
 }
 

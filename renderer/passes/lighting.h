@@ -18,7 +18,7 @@ enum lighting_display { LIGHTING_LINEAR, LIGHTING_SRGB, LIGHTING_ACES };
 
 struct lighting_input {
     struct draw_scene *scene;
-    const struct gbuffer *gbuffer;
+    struct gbuffer *gbuffer;
     const struct gl_texture *visibility; /* a layer a light */
     const struct light *lights;
     size_t light_count;

@@ -101,7 +101,7 @@ static void put_map(struct maps_block *block, unsigned i, const struct view *map
     put_row(block->map_rows[3 * i + 2], map->forward, offset);
     double sx = map->width / (map->right_edge - map->left), sy = map->height / (map->top - map->bottom);
     vec4 scale = {(float)sx, (float)-sy, (float)(-map->left * sx), (float)(map->top * sy)};
-    vec4 depth = {(float)map->near, isinf(map->far) ? 0 : (float)map->far, map->orthographic, (float)fmax(1 / sx, 1 / sy)};
+    vec4 depth = {(float)map->near, isinf(map->far) ? 0 : (float)map->far, 0, (float)fmax(1 / sx, 1 / sy)};
     memcpy(block->map_scale[i], scale, sizeof scale);
     memcpy(block->map_depth[i], depth, sizeof depth);
 }

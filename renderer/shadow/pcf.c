@@ -16,7 +16,7 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
 
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
-    return light_maps_bind(state, in, err) && shadow_run_full_screen(in, "pcf.frag", NULL, err);
+    return shadow_run_with_maps(state, in, "pcf.frag", err);
 }
 
 static void finish(void *state) { light_maps_finish(state); }

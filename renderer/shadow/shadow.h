@@ -90,7 +90,7 @@ struct shadow_system {
     bool (*init)(void *state, const struct shadow_input *in, struct error *err);    /* optional: allocations, programs */
     bool (*prepare)(void *state, const struct shadow_input *in, struct error *err); /* optional: maps, lists, trees */
     /* Writes one value in [0, 1] per pixel to the framebuffer bound by the framework (one R32F colour attachment of the picture's
-     * size); 0 where there is no receiver (shaders/receiver.glsl). */
+     * size, cleared to 0); 0 where there is no receiver (shaders/receiver.glsl). */
     bool (*resolve)(void *state, const struct shadow_input *in, struct error *err);
     void (*finish)(void *state);      /* optional; accepts half-initialised state */
     size_t (*bytes)(const void *state); /* optional: what the state holds on the GPU and CPU, now */

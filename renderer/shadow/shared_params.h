@@ -23,5 +23,10 @@ enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT };
     {.name = "slope", .unit = "", .help = "More of it: times a texel's size times the tangent of the angle of incidence.",          \
      .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = 1}
 
+struct light_maps;
+
 /* Runs `fragment` over the picture, into the bound framebuffer, with receivers, light and parameters bound. */
 bool shadow_run_full_screen(const struct shadow_input *in, const char *fragment, const char *defines, struct error *err);
+
+/* The same for a shader that includes maps.glsl. Without maps, every receiver is lit. */
+bool shadow_run_with_maps(struct light_maps *maps, const struct shadow_input *in, const char *fragment, struct error *err);

@@ -3,46 +3,24 @@
 
 #include "base/job_pool.h"
 #include "trace/rays.h"
+#include "trace/surface.h"
 
 struct camera_job {
     const struct tracer *tracer;
     const struct view *view;
     struct ray_frame frame;
     uint32_t *ids;
-    float *receivers;
+    struct pixel *pixels;
 };
 
-/* Unit normals turned towards the eye. Scaled by their largest component first: a small triangle's square underflows. */
-static void unit_normals(const struct RTCHit16 *hit, const float facing[LANES], float out[restrict 3][LANES])
+static void write_pixels(const struct camera_job *job, const int valid[LANES], const struct RTCRayHit16 *packet,
+                         const float facing[LANES], uint32_t x, uint32_t y)
 {
-    for (int i = 0; i < LANES; i++) {
-        float x = hit->Ng_x[i], y = hit->Ng_y[i], z = hit->Ng_z[i];
-        float most = fmaxf(fmaxf(fabsf(x), fabsf(y)), fabsf(z));
-        float s = 1 / (most > 0 ? most : 1);
-        x *= s, y *= s, z *= s;
-        s = 1 / sqrtf(x * x + y * y + z * z);
-        s = facing[i] > 0 ? -s : s;
-        out[0][i] = x * s;
-        out[1][i] = y * s;
-        out[2][i] = z * s;
-    }
-}
-
-static void write_receivers(const struct camera_job *job, const int valid[LANES], const struct RTCRayHit16 *packet,
-                            const float facing[LANES], uint32_t x, uint32_t y)
-{
-    float normal[3][LANES];
-    unit_normals(&packet->hit, facing, normal);
-    for (uint32_t i = 0; i < LANES; i++) {
-        if (!valid[i])
-            continue;
-        float *out = job->receivers + ((size_t)(y + i / PACKET) * job->view->width + x + i % PACKET) * 4;
-        bool hit = packet->hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-        out[0] = hit ? normal[0][i] : 0;
-        out[1] = hit ? normal[1][i] : 0;
-        out[2] = hit ? normal[2][i] : 0;
-        out[3] = hit ? (float)job->frame.start + packet->ray.tfar[i] : 0;
-    }
+    struct pixel pixels[LANES];
+    surface_pixels(job->tracer->surfaces, packet, facing, (float)job->frame.start, pixels);
+    for (uint32_t i = 0; i < LANES; i++)
+        if (valid[i])
+            job->pixels[(size_t)(y + i / PACKET) * job->view->width + x + i % PACKET] = pixels[i];
 }
 
 static void write_ids(const struct camera_job *job, const int valid[LANES], const struct RTCHit16 *hit, uint32_t x, uint32_t y)
@@ -69,14 +47,14 @@ static void camera_tile(void *context, size_t index, unsigned worker)
             tile_lanes(&tile, x, y, valid);
             trace_visible(job->tracer, valid, job->frame.tfar, &packet, facing);
             write_ids(job, valid, &packet.hit, x, y);
-            if (job->receivers)
-                write_receivers(job, valid, &packet, facing, x, y);
+            if (job->pixels)
+                write_pixels(job, valid, &packet, facing, x, y);
         }
 }
 
-void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, float *receivers)
+void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, struct pixel *pixels)
 {
-    struct camera_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .ids = ids, .receivers = receivers};
+    struct camera_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .ids = ids, .pixels = pixels};
     job_pool_for(pool, tile_count(view), camera_tile, &job);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "trace/hole.h"
+#include "trace/surface.h"
 #include "trace/tree.h"
 
 static bool count_memory(void *tracer, ssize_t bytes, bool post)
@@ -74,8 +75,9 @@ static bool allocate(struct tracer *t)
     t->first_vertex = calloc(instances + 1, sizeof *t->first_vertex);
     t->geometries = calloc(instances + 1, sizeof(RTCGeometry));
     t->front = calloc(instances + 1, 1);
+    t->surfaces = surfaces_create(t->scene);
     t->casters = caster_cache_create();
-    if (!t->first_vertex || !t->geometries || !t->front || !t->casters)
+    if (!t->first_vertex || !t->geometries || !t->front || !t->surfaces || !t->casters)
         return false;
     for (size_t i = 0; i < instances; i++) {
         t->first_vertex[i] = t->vertex_count;
@@ -132,6 +134,7 @@ void tracer_destroy(struct tracer *t)
         rtcReleaseDevice(t->device);
     free(t->vertices);
     free(t->front);
+    free(t->surfaces);
     free(t->geometries);
     free(t->first_vertex);
     free(t);
@@ -140,5 +143,5 @@ void tracer_destroy(struct tracer *t)
 size_t tracer_bytes(const struct tracer *t)
 {
     return atomic_load(&t->embree_bytes) + sizeof *t + t->vertex_count * sizeof t->vertices[0] +
-           t->scene->instance_count * (sizeof(RTCGeometry) + sizeof(size_t) + 1);
+           t->scene->instance_count * (sizeof(RTCGeometry) + sizeof(size_t) + sizeof(struct surface) + 1);
 }

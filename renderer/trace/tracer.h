@@ -11,6 +11,7 @@
 
 struct error;
 struct job_pool;
+struct pixel;
 struct tracer;
 
 /* `scene` must outlive it. Threads bounds the tree build. ERROR_TRY_AGAIN when memory is out. */
@@ -18,10 +19,10 @@ struct tracer *tracer_create(const struct scene *scene, unsigned threads, struct
 void tracer_destroy(struct tracer *t);
 size_t tracer_bytes(const struct tracer *t);
 
-/* The camera pass, traced: for every pixel the drawn-triangle id visible at its centre (SCENE_NONE: none), and its receiver: xyz = the
- * triangle's unit geometric normal turned towards the eye, w = depth along view.forward (0 where there is none). Obeys double_sided,
- * holes (material_alpha), view.near and view.far. ids: width * height; receivers: width * height * 4, may be NULL. */
-void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, float *receivers);
+/* The camera pass, traced: for every pixel the drawn-triangle id visible at its centre (SCENE_NONE: none), and what is to be known of the
+ * surface there, textures apart. Obeys double_sided, holes (material_alpha), view.near and view.far. Both width * height; pixels may be
+ * NULL. */
+void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, struct pixel *pixels);
 
 /* A light's depth map, traced: the nearest depth along view.forward at each texel centre over `casters` only (ascending instance
  * indices; NULL: all), INFINITY where there is none; every triangle counts, whichever side it shows; holes are holes.

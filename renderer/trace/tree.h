@@ -8,6 +8,7 @@
 #include "trace/tracer.h"
 
 struct caster_cache;
+struct surface;
 
 /* Which faces the camera sees, by the side that cross(v1 - v0, v2 - v0) points to. */
 enum front { FRONT_BOTH, FRONT_CCW, FRONT_CW };
@@ -21,6 +22,7 @@ struct tracer {
     size_t *first_vertex;    /* of each instance */
     size_t vertex_count;
     uint8_t *front;          /* of each instance: enum front */
+    struct surface *surfaces; /* of each instance */
     struct caster_cache *casters;
     atomic_size_t embree_bytes;
 };

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/job_pool.h"
 #include "made_scene.h"
+#include "scene/pixel.h"
 #include "trace/tracer.h"
 
 enum { WIDTH = 37, HEIGHT = 23 };
@@ -31,7 +32,7 @@ struct shot {
     struct tracer *tracer;
     struct view view;
     uint32_t ids[WIDTH * HEIGHT];
-    float receivers[WIDTH * HEIGHT][4];
+    struct pixel pixels[WIDTH * HEIGHT];
 };
 
 static struct shot *shoot(struct scene *scene, struct camera camera)
@@ -44,7 +45,7 @@ static struct shot *shoot(struct scene *scene, struct camera camera)
     assert_non_null(s->tracer);
     assert_true(tracer_bytes(s->tracer) > 0);
     s->view = view_from_camera(&camera, WIDTH, HEIGHT);
-    tracer_camera(s->tracer, &s->view, s->pool, s->ids, &s->receivers[0][0]);
+    tracer_camera(s->tracer, &s->view, s->pool, s->ids, s->pixels);
     return s;
 }
 
@@ -94,14 +95,16 @@ static void depth_and_normal_are_the_planes(void **state)
     struct shot *s = shoot(scene, made_camera(dvec3(1, 0.5, 6), dvec3(0, 0, 0), 0.7));
     size_t checked = 0;
     for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
-        const float *r = s->receivers[i];
+        float r[3];
         if (s->ids[i] == SCENE_NONE) {
-            assert_true(r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0);
+            static const struct pixel nothing;
+            assert_memory_equal(&s->pixels[i], &nothing, sizeof nothing);
             continue;
         }
+        pixel_geometric(&s->pixels[i], r);
         struct dvec3 origin, direction;
         view_ray(&s->view, (double)(i % WIDTH) + 0.5, (double)(i / WIDTH) + 0.5, &origin, &direction);
-        struct dvec3 p = dvec3_mad(origin, direction, r[3]);
+        struct dvec3 p = dvec3_mad(origin, direction, s->pixels[i].depth);
         assert_true(fabs(p.z - (s->ids[i] < 2 ? 0 : -2)) < 4e-6);
         assert_true(fabs(r[2] - 1) < 1e-6 && fabs(r[0]) < 1e-6 && fabs(r[1]) < 1e-6);
         checked++;
@@ -193,7 +196,7 @@ static void near_and_far_cut(void **state)
         camera.far = 9;
         struct shot *s = shoot(scene, camera);
         assert_true(middle(s) >= 2 && middle(s) < 4);
-        assert_true(fabs(s->receivers[HEIGHT / 2 * WIDTH + WIDTH / 2 + 1][3] - 8) < 4e-6);
+        assert_true(fabs(s->pixels[HEIGHT / 2 * WIDTH + WIDTH / 2 + 1].depth - 8) < 4e-6);
         s->view.far = 7;
         tracer_camera(s->tracer, &s->view, s->pool, s->ids, NULL);
         assert_int_equal(middle(s), SCENE_NONE);
