@@ -1,0 +1,20 @@
+/* The methods, one file a subject; table.c lists them. */
+#pragma once
+
+#include "dispatch.h"
+
+extern const struct method method_scene_load, method_scene_describe;
+extern const struct method method_view_open, method_view_set, method_view_close, method_frame_ack;
+extern const struct method method_light_add, method_light_set, method_light_remove;
+extern const struct method method_render_snapshot;
+
+struct view_record;
+
+/* Hands the view's new state to the render thread, with the newest input's echo (0: none given, keeps the last). */
+void view_publish(struct server *server, struct view_record *view, uint64_t input_seq, uint64_t input_time_us);
+void view_close(struct server *server, struct view_record *view);
+
+/* The notification that each session gets first. */
+json_t *hello_params(struct server *server, uint64_t session);
+/* view.stats of one view; NULL when it is gone. `seconds` since the counts in *frames and *dropped, which it replaces. */
+json_t *view_stats(struct server *server, const struct view_record *view, double seconds, uint64_t *frames, uint64_t *bytes);
