@@ -13,7 +13,7 @@ static const struct command {
     const char *summary;
     int (*run)(int argc, char **argv); /* NULL: not built yet */
 } commands[] = {
-    {"serve", "serve scenes to browsers and scripts over HTTP and WebSocket", NULL},
+    {"serve", "serve scenes to browsers and scripts over HTTP and WebSocket", command_serve},
     {"render", "render a scene to a picture file", command_render},
     {"compare", "measure a shadow system's error against ray tracing", command_compare},
     {"bench", "measure every system on a suite of scenes", NULL},
