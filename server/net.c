@@ -18,6 +18,8 @@ static_assert(PACKET_HEADROOM >= LWS_PRE, "lws_write() puts its frame header in 
 
 #define BODY_CHUNK (256u * 1024)
 #define TX_PACKET_SIZE (1u << 20) /* with 0, a frame of 200 kB took 54 sends, and copies */
+/* A body too long is read past up to here, so that its sender sees the answer and not a reset connection. */
+#define DISCARD_MAX (64ull << 20)
 #define CLOSE_TIMEOUT_S 5
 
 /* What lws forgets once the headers are parsed. */
@@ -228,8 +230,10 @@ static int http_begin(struct net *net, struct peer *peer, struct lws *wsi)
         return 0;
     }
     unsigned long long announced = strtoull(length, NULL, 10);
-    if (announced > NET_MESSAGE_MAX)
+    if (announced > DISCARD_MAX)
         refuse(net, c, 413);
+    else if (announced > NET_MESSAGE_MAX)
+        c->refused = c->refused ? c->refused : 413;
     else if (announced == 0)
         deliver_request(net, c);
     return 0;
@@ -253,6 +257,12 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
 
 static size_t body_size(const struct connection *c) { return c->response.body ? c->response.body->size - c->response.offset : 0; }
 
+/* A body that was not read would be taken for the next request. */
+static bool must_close(const struct connection *c)
+{
+    return c->request.method == NET_OTHER || c->response.status == 411 || (c->response.status == 413 && !c->refused);
+}
+
 static bool send_headers(struct connection *c)
 {
     unsigned char buffer[LWS_PRE + 4096], *p = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
@@ -265,14 +275,15 @@ static bool send_headers(struct connection *c)
         ok = add_header(c->wsi, "access-control-allow-origin:", r->allow_origin, &p, end) && add_header(c->wsi, "vary:", "Origin", &p, end);
     for (size_t i = 0; ok && i + 1 < sizeof r->headers / sizeof r->headers[0] && r->headers[i]; i += 2)
         ok = add_header(c->wsi, r->headers[i], r->headers[i + 1], &p, end);
+    if (ok && must_close(c))
+        ok = add_header(c->wsi, "connection:", "close", &p, end);
     return ok && lws_finalize_write_http_header(c->wsi, buffer + LWS_PRE, &p, end) == 0;
 }
 
 static int http_finish(struct net *net, struct peer *peer, struct connection *c)
 {
     struct lws *wsi = c->wsi;
-    /* A body that was not read would be taken for the next request. */
-    bool unread = c->request.method == NET_OTHER || c->response.status == 411 || c->response.status == 413;
+    bool unread = must_close(c);
     close_connection(net, peer);
     return lws_http_transaction_completed(wsi) || unread ? -1 : 0;
 }
