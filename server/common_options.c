@@ -186,7 +186,7 @@ static bool set_device(void *target, const char *value, struct error *err)
 {
     struct common_options *o = target;
     if (!*value)
-        return error_set(err, ERROR_USAGE, "device", "an index of gnomon list devices, a DRM node path or software is accepted");
+        return error_set(err, ERROR_USAGE, "device", "an index of gnomon list devices, a DRM node path, cuda:N or software is accepted");
     o->device = value;
     return true;
 }
@@ -243,7 +243,7 @@ const struct option common_option_table[] = {
      set_frames_timed},
     {"moving", NULL, "turn the lights by 0.25 degrees for each timed frame", set_moving},
     {"threads", "N", "bounds all work (default SLURM_CPUS_PER_TASK, else the cores allowed)", set_threads},
-    {"device", "INDEX|NODE|software", "which GPU; gnomon list devices prints them (default: the first that works)", set_device},
+    {"device", "INDEX|NODE|software", "gnomon list devices prints them; cuda:N is taken too (default: the first that works)", set_device},
     {"memory", "MIB", "budget for GPU memory", NULL},
     {"shader-dir", "DIR", "read the shaders from DIR, again whenever they change", set_shader_dir},
     {"quiet", NULL, "no progress bar", set_quiet},

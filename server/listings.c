@@ -87,11 +87,12 @@ json_t *listing_devices(const struct device_info *devices, size_t count)
     json_t *array = json_array();
     for (size_t i = 0; i < count; i++) {
         const struct device_info *d = &devices[i];
-        json_array_append_new(
-            array, json_pack("{s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:b, s:b, s:o}", "index", d->index, "platform", d->platform,
-                             "node", json_text(d->node), "vendor", json_text(d->vendor), "renderer", json_text(d->renderer),
-                             "version", json_text(d->version), "cuda", d->cuda < 0 ? json_null() : json_integer(d->cuda),
-                             "software", d->software, "usable", d->why_not[0] == 0, "why_not", json_text(d->why_not)));
+        json_array_append_new(array, json_pack("{s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:b, s:b, s:o}", "index",
+                                               d->index < 0 ? json_null() : json_integer(d->index), "platform", d->platform,
+                                               "node", json_text(d->node), "vendor", json_text(d->vendor), "renderer",
+                                               json_text(d->renderer), "version", json_text(d->version), "cuda",
+                                               d->cuda < 0 ? json_null() : json_integer(d->cuda), "software", d->software,
+                                               "usable", d->why_not[0] == 0, "why_not", json_text(d->why_not)));
     }
     return array;
 }

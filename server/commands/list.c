@@ -80,7 +80,10 @@ static void print_devices(const struct device_info *devices, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const struct device_info *d = &devices[i];
-        printf("%d  %-11s %-22s ", d->index, d->platform, d->node[0] ? d->node : "-");
+        char index[16] = "-";
+        if (d->index >= 0)
+            snprintf(index, sizeof index, "%d", d->index);
+        printf("%-3s %-11s %-22s ", index, d->platform, d->node[0] ? d->node : "-");
         if (d->why_not[0])
             printf("not usable: %s\n", d->why_not);
         else
