@@ -9,7 +9,7 @@
 #include "shadow/shadow.h"
 
 const char *const drop_reason_names[DROP_REASONS] = {"busy", "credit", "socket", "closed", "failed"};
-const char *const codec_names[METRICS_CODECS] = {"jpeg", "png", "webp", "exr"};
+const char *const codec_names[METRICS_CODECS + 1] = {"jpeg", "png", "webp", "exr", NULL};
 
 /* Milliseconds; dense around the 16 and 33 ms that a viewer feels. */
 static const double bucket_ms[METRICS_BUCKETS] = {1, 2, 4, 8, 16, 24, 33, 50, 75, 100, 200, 500, 1000, 5000};

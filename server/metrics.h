@@ -33,7 +33,7 @@ struct metrics {
 };
 
 extern const char *const drop_reason_names[DROP_REASONS];
-extern const char *const codec_names[METRICS_CODECS];
+extern const char *const codec_names[METRICS_CODECS + 1]; /* by enum gnmf_codec; ended by NULL */
 
 /* A frame's time from submission to its pixels in CPU memory. */
 void metrics_frame(struct metrics *m, size_t algorithm, double frame_ms);

@@ -53,9 +53,11 @@ static void check_range(const struct member *m, const json_t *schema)
     if (m->kind != MEMBER_CHOICE)
         return;
     size_t count = 0;
-    for (; m->choices[count]; count++)
-        assert_string_equal(json_string_value(json_array_get(values, count)), m->choices[count]);
+    while (m->choices[count])
+        count++;
     assert_int_equal(json_array_size(values), count);
+    for (size_t i = 0; i < count; i++)
+        assert_string_equal(json_string_value(json_array_get(values, i)), m->choices[i]);
 }
 
 static void test_methods(void **state)
