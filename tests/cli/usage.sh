@@ -13,16 +13,13 @@ says 'Exit codes: 0 .*64 .*65 .*66 .*69'
 bad 64 'serve, render, compare, bench, batch, check, list' unknown
 bad 64 'serve, render, compare, bench, batch, check, list'
 
-built='render compare check list'
-shared='render compare'
-"$GNOMON" --help | grep -q '^  serve.*not built yet' || { built="$built serve" shared="$shared serve"; }
-for command in $built; do
+for command in serve render compare check list; do
     good $command --help
     says "^Usage: gnomon $command "
     says '^Examples:$'
     bad 64 "$command has no option --nonsense; accepted: " $command --nonsense
 done
-for command in $shared; do
+for command in serve render compare; do
     good $command --help
     for option in size camera eye target up fov light algorithm show exposure ambient tonemap aa time camera-pass frames-timed moving \
         threads device memory quiet log-level; do
@@ -57,7 +54,7 @@ bad 64 'scenes, algorithms or devices' list cameras
 bad 64 'no_such_scene' check builtin:no_such_scene
 bad 64 'no_such_scene' render builtin:no_such_scene -o "$work/a.png"
 bad 64 'point, spot or directional' render builtin:box -o "$work/a.png" --light lamp
-case $built in *serve) bad 64 'token' serve --listen 0.0.0.0:0 ;; esac
+bad 64 'token' serve --listen 0.0.0.0:0
 
 # Scenes.
 printf 'not a scene' >"$work/broken.glb"
