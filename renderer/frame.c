@@ -14,13 +14,6 @@ _Static_assert((int)SHOW_SHADED == LIGHTING_SHADED && (int)SHOW_VISIBILITY == LI
                "enum show and enum lighting_show");
 _Static_assert(RENDERER_LIGHTS_MAX == LIGHTS_MAX && SHADOW_MAPS_MAX == MAPS_MAX && SHADOW_PARAM_MAX <= 16, "blocks.h");
 
-static bool choose_traced(const struct renderer *r, const struct scene *scene, enum camera_pass choice, size_t rays)
-{
-    if (choice != CAMERA_PASS_AUTO)
-        return choice == CAMERA_PASS_TRACED;
-    return producer_prefers_tracing(&r->gl.caps, scene->drawn_triangle_count, rays);
-}
-
 static void mark(struct renderer *r, enum render_pass pass, struct frame_info *info)
 {
     info->pass_ms[pass] = gl_timer_mark(&r->timer, pass);
@@ -30,7 +23,8 @@ static bool run_camera(struct renderer *r, struct render_scene *s, const struct 
                        struct error *err)
 {
     size_t pixels = (size_t)r->gbuffer.view.view.width * r->gbuffer.view.view.height;
-    info->traced_camera = choose_traced(r, s->scene, settings->camera_pass, pixels);
+    info->traced_camera = settings->camera_pass == CAMERA_PASS_AUTO ? producer_traces_camera(&s->draw, pixels)
+                                                                    : settings->camera_pass == CAMERA_PASS_TRACED;
     if (info->traced_camera) {
         const struct tracer *tracer = render_scene_tracer(s, err);
         if (!tracer || !camera_trace(&r->gbuffer, &s->draw, tracer, r->pool, err))
@@ -70,10 +64,17 @@ static bool bind_light(struct renderer *r, const struct shadow_input *in, size_t
     return true;
 }
 
+static bool traces_maps(const struct render_scene *s, const struct render_settings *settings)
+{
+    if (!(settings->system->flags & SHADOW_USES_MAPS))
+        return false;
+    double side = settings->params.value[shadow_param_index(settings->system, "size")];
+    return settings->map_pass == CAMERA_PASS_AUTO ? producer_traces_map(&s->draw, (size_t)(side * side))
+                                                  : settings->map_pass == CAMERA_PASS_TRACED;
+}
+
 static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings, unsigned light)
 {
-    int size = shadow_param_index(settings->system, "size");
-    double side = size >= 0 ? settings->params.value[size] : 0;
     return (struct shadow_input){
         .scene = s->scene,
         .light = &settings->lights[light],
@@ -84,8 +85,7 @@ static struct shadow_input input_for(struct renderer *r, struct render_scene *s,
         .tracer = render_scene_tracer,
         .reference = render_scene_reference,
         .owner = s,
-        .trace_maps = settings->system->flags & SHADOW_USES_MAPS &&
-                      choose_traced(r, s->scene, settings->map_pass, (size_t)(side * side)),
+        .trace_maps = traces_maps(s, settings),
         .pool = r->pool,
         .gl = &r->gl,
     };

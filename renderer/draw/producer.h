@@ -1,11 +1,14 @@
-/* Which producer makes an id buffer or a depth map: the rasterizer or the ray tracer. */
+/* Which producer makes an id buffer or a depth map: the rasterizer or the ray tracer. A model, not a stop-watch: the same command gives the
+ * same picture, and a small scene builds no tree. On a GPU always the rasterizer. */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 
-struct gl_caps;
+struct draw_scene;
 
-/* True if tracing `rays` rays through `triangles` triangles is expected to be faster than rasterizing them. A model, not a stop-watch:
- * the same command gives the same picture, and a small scene builds no tree. */
-bool producer_prefers_tracing(const struct gl_caps *caps, size_t triangles, size_t rays);
+/* The camera's picture of `pixels`. */
+bool producer_traces_camera(const struct draw_scene *scene, size_t pixels);
+
+/* A light's map of `texels`. */
+bool producer_traces_map(const struct draw_scene *scene, size_t texels);
