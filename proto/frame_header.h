@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-#define GNMF_MAGIC "GNMF"
-#define GNMF_VERSION 1
+#define GNMF_MAGIC       "GNMF"
+#define GNMF_VERSION     1
 #define GNMF_HEADER_SIZE 64
 
 enum gnmf_kind { GNMF_STREAM = 0, GNMF_SNAPSHOT = 1, GNMF_DIFFERENCE = 2 };

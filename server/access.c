@@ -20,8 +20,9 @@ static bool add_line(struct access *access, const char *path, unsigned number, c
     enum role role = strcmp(word, "view") == 0 ? ROLE_VIEW : strcmp(word, "control") == 0 ? ROLE_CONTROL : ROLE_NONE;
     char *token = strtok_r(NULL, " \t\r\n", &rest);
     if (role == ROLE_NONE || !token || strlen(token) > TOKEN_MAX || strtok_r(NULL, " \t\r\n", &rest))
-        return error_set(err, ERROR_USAGE, "--token-file", "%s line %u: \"view TOKEN\" or \"control TOKEN\" is wanted; a token has 1 to %d characters",
-                         path, number, TOKEN_MAX);
+        return error_set(err, ERROR_USAGE, "--token-file",
+                         "%s line %u: \"view TOKEN\" or \"control TOKEN\" is wanted; a token has 1 to %d characters", path,
+                         number, TOKEN_MAX);
     char *copy = strdup(token);
     if (!copy || !array_push(&access->tokens, ((struct access_token){copy, role}))) {
         free(copy);
@@ -34,8 +35,8 @@ bool access_read_tokens(struct access *access, const char *path, struct error *e
 {
     FILE *file = fopen(path, "re");
     if (!file)
-        return error_set(err, errno == ENOENT ? ERROR_NO_INPUT : ERROR_IO, "--token-file", "--token-file %s: %s; a readable file is wanted", path,
-                         strerror(errno));
+        return error_set(err, errno == ENOENT ? ERROR_NO_INPUT : ERROR_IO, "--token-file",
+                         "--token-file %s: %s; a readable file is wanted", path, strerror(errno));
     char line[TOKEN_MAX + 64];
     bool ok = true;
     for (unsigned number = 1; ok && fgets(line, sizeof line, file); number++)
@@ -45,7 +46,8 @@ bool access_read_tokens(struct access *access, const char *path, struct error *e
     fclose(file);
     access->tokens_needed = true;
     if (ok && access->tokens.count == 0)
-        return error_set(err, ERROR_USAGE, "--token-file", "%s holds no token; lines \"view TOKEN\" or \"control TOKEN\" are wanted", path);
+        return error_set(err, ERROR_USAGE, "--token-file",
+                         "%s holds no token; lines \"view TOKEN\" or \"control TOKEN\" are wanted", path);
     return ok;
 }
 

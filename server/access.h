@@ -17,10 +17,10 @@ struct access_token {
 
 struct access {
     ARRAY(struct access_token) tokens;
-    bool tokens_needed;           /* a token file was given */
-    const char *listen_host;      /* as in --listen, without brackets; borrowed */
-    bool loopback;                /* listen_host is one */
-    const char *const *origins;   /* --allow-origin, borrowed */
+    bool tokens_needed;         /* a token file was given */
+    const char *listen_host;    /* as in --listen, without brackets; borrowed */
+    bool loopback;              /* listen_host is one */
+    const char *const *origins; /* --allow-origin, borrowed */
     size_t origin_count;
 };
 

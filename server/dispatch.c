@@ -120,7 +120,8 @@ static void run(struct server *server, struct call *call)
     case OUTCOME_DONE: answer(server, call, result ? result : json_object()); break;
     case OUTCOME_FAILED: answer_error(server, call, dispatch_code(&err), &err); break;
     case OUTCOME_NO_VIEW:
-        error_set(&err, ERROR_USAGE, "view", "view: this session has no such view; the number that view.open returned is accepted");
+        error_set(&err, ERROR_USAGE, "view",
+                  "view: this session has no such view; the number that view.open returned is accepted");
         answer_error(server, call, RPC_NO_SUCH_VIEW, &err);
         break;
     case OUTCOME_SCENE:
@@ -151,9 +152,8 @@ static bool check_envelope(const json_t *message, struct error *err)
     json_t *value;
     if (!json_is_object(message))
         return error_set(err, ERROR_USAGE, "", "a message is one JSON object; batches are not accepted");
-    json_object_foreach((json_t *)message, key, value)
-        if (name_index(members, key) < 0)
-            return error_set(err, ERROR_USAGE, key, "unknown member %.60s; accepted: jsonrpc, id, method, params", key);
+    json_object_foreach((json_t *)message, key, value) if (name_index(members, key) < 0) return error_set(
+        err, ERROR_USAGE, key, "unknown member %.60s; accepted: jsonrpc, id, method, params", key);
     const char *version = json_string_value(json_object_get(message, "jsonrpc"));
     if (!version || strcmp(version, "2.0") != 0)
         return error_set(err, ERROR_USAGE, "jsonrpc", "jsonrpc is missing or wrong; \"2.0\" is accepted");
@@ -173,8 +173,8 @@ void dispatch_message(struct server *server, uint64_t session, const char *text,
     json_t *id = json_is_object(message) ? json_object_get(message, "id") : NULL;
     const struct method *method = NULL;
     if (!message) {
-        error_set(&err, ERROR_USAGE, "", "this is no JSON (line %d, column %d: %.100s); one JSON-RPC 2.0 object is accepted", where.line,
-                  where.column, where.text);
+        error_set(&err, ERROR_USAGE, "", "this is no JSON (line %d, column %d: %.100s); one JSON-RPC 2.0 object is accepted",
+                  where.line, where.column, where.text);
         refuse_message(server, session, NULL, RPC_PARSE_ERROR, &err);
     } else if (!check_envelope(message, &err)) {
         refuse_message(server, session, id, RPC_INVALID_REQUEST, &err);
@@ -203,7 +203,8 @@ void dispatch_render(struct server *server, uint64_t request, const char *allow_
     json_t *params = json_loadb(text, size, JSON_REJECT_DUPLICATES, &where);
     struct call *call = params ? calloc(1, sizeof *call) : NULL;
     if (!call) {
-        error_set(&err, ERROR_USAGE, "", "the body is no JSON (line %d, column %d: %.100s); an object with render.snapshot's members is accepted",
+        error_set(&err, ERROR_USAGE, "",
+                  "the body is no JSON (line %d, column %d: %.100s); an object with render.snapshot's members is accepted",
                   where.line, where.column, where.text);
         http_answer_error(server, request, allow_origin, RPC_PARSE_ERROR, &err);
         json_decref(params);
@@ -245,9 +246,10 @@ static void answer_picture(struct server *server, const struct call *call, struc
     size_t bytes = job->packet->size - GNMF_HEADER_SIZE;
     net_send(server->net, call->session, job->packet);
     job->packet = NULL;
-    answer(server, call, json_pack("{s:I, s:[i,i], s:s, s:I, s:I, s:I}", "request_id", (json_int_t)job->header.request_id, "size",
-                                   (int)job->width, (int)job->height, "format", codec_names[job->header.codec], "bytes", (json_int_t)bytes,
-                                   "render_us", (json_int_t)job->header.render_us, "encode_us", (json_int_t)job->header.encode_us));
+    answer(server, call,
+           json_pack("{s:I, s:[i,i], s:s, s:I, s:I, s:I}", "request_id", (json_int_t)job->header.request_id, "size",
+                     (int)job->width, (int)job->height, "format", codec_names[job->header.codec], "bytes", (json_int_t)bytes,
+                     "render_us", (json_int_t)job->header.render_us, "encode_us", (json_int_t)job->header.encode_us));
 }
 
 void dispatch_picture(struct server *server, struct encode_job *job)
@@ -291,7 +293,8 @@ void dispatch_forget(struct server *server, uint64_t session)
         }
 }
 
-enum outcome dispatch_scene(struct server *server, struct call *call, const char *name, struct scene_entry **out, struct error *err)
+enum outcome dispatch_scene(struct server *server, struct call *call, const char *name, struct scene_entry **out,
+                            struct error *err)
 {
     struct scene_entry *evicted;
     struct scene_entry *entry = scene_store_get(server->scenes, name ? name : server->first_scene, &evicted, err);

@@ -31,31 +31,31 @@ enum rpc_code {
 };
 
 enum outcome {
-    OUTCOME_DONE,    /* *result is the answer */
-    OUTCOME_FAILED,  /* err says why */
+    OUTCOME_DONE,   /* *result is the answer */
+    OUTCOME_FAILED, /* err says why */
     OUTCOME_NO_VIEW,
-    OUTCOME_SCENE,   /* run again when call->scene has been loaded */
-    OUTCOME_LATER,   /* answered when its picture is ready */
+    OUTCOME_SCENE, /* run again when call->scene has been loaded */
+    OUTCOME_LATER, /* answered when its picture is ready */
 };
 
 /* A request under way. */
 struct call {
     struct call *link;
     uint64_t session;
-    bool http;                    /* answered with a picture or a status */
-    json_t *id;                   /* NULL: a notification, or HTTP */
-    json_t *params;               /* may be NULL */
+    bool http;      /* answered with a picture or a status */
+    json_t *id;     /* NULL: a notification, or HTTP */
+    json_t *params; /* may be NULL */
     const struct method *method;
-    struct scene_entry *scene;    /* waited for; one reference */
-    struct snapshot *snapshot;    /* under way */
-    char allow_origin[256];       /* HTTP: "" none */
+    struct scene_entry *scene; /* waited for; one reference */
+    struct snapshot *snapshot; /* under way */
+    char allow_origin[256];    /* HTTP: "" none */
 };
 
 struct method {
     const char *name;
     const struct member *members;
     size_t params_size;
-    bool control;                 /* not for view tokens */
+    bool control; /* not for view tokens */
     enum outcome (*run)(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
                         struct error *err);
 };
@@ -82,4 +82,5 @@ json_t *dispatch_error_json(enum rpc_code code, const struct error *err);
 enum rpc_code dispatch_code(const struct error *err);
 
 /* For methods: the entry of `name` (NULL: the server's first scene), READY and with one reference; else OUTCOME_SCENE or OUTCOME_FAILED. */
-enum outcome dispatch_scene(struct server *server, struct call *call, const char *name, struct scene_entry **out, struct error *err);
+enum outcome dispatch_scene(struct server *server, struct call *call, const char *name, struct scene_entry **out,
+                            struct error *err);

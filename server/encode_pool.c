@@ -10,7 +10,7 @@
 #include "import/import.h"
 
 #define SPARE_BUFFERS 4
-#define ENCODERS_MAX 16
+#define ENCODERS_MAX  16
 
 struct buffer {
     void *data;
@@ -93,8 +93,8 @@ static void encode(struct encode_job *job, struct jpeg_encoder *jpeg)
         return;
     }
     uint8_t *bytes = NULL;
-    if (image_encode(image_format_of(job->header.codec), job->pixels, job->width, job->height, job->quality, NULL, 0, &bytes, &size,
-                     &job->err))
+    if (image_encode(image_format_of(job->header.codec), job->pixels, job->width, job->height, job->quality, NULL, 0, &bytes,
+                     &size, &job->err))
         make_packet(job, bytes, size, started);
     free(bytes);
 }

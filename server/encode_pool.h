@@ -18,11 +18,11 @@ struct encode_job {
     int quality;                /* 1..100; JPEG and WebP */
     void *pixels;               /* from encode_pool_buffer(); rgba8, or rgba32f for EXR */
     size_t pixels_capacity;
-    uint32_t width, height;     /* pixels; a snapshot's may not fit the header's 16 bits */
-    struct snapshot *snapshot;  /* NULL for a stream frame; not touched here */
+    uint32_t width, height;    /* pixels; a snapshot's may not fit the header's 16 bits */
+    struct snapshot *snapshot; /* NULL for a stream frame; not touched here */
 
     /* Result: one of the two. */
-    struct packet *packet;      /* header and payload */
+    struct packet *packet; /* header and payload */
     struct error err;
 };
 

@@ -12,7 +12,7 @@
 
 struct packet {
     _Atomic unsigned refs;
-    bool binary;   /* else UTF-8 text */
+    bool binary; /* else UTF-8 text */
     size_t size;
     uint8_t *data; /* `size` bytes, PACKET_HEADROOM writable bytes before them */
 };

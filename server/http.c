@@ -10,8 +10,8 @@
 #define TEXT "text/plain; charset=utf-8"
 
 /* The page loads nothing but what we serve; frames are drawn from memory. */
-#define PAGE_POLICY                                                                                                                         \
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws: wss:; base-uri 'none'; "   \
+#define PAGE_POLICY                                                                                                                       \
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws: wss:; base-uri 'none'; " \
     "form-action 'none'; frame-ancestors 'none'"
 
 struct route {
@@ -26,8 +26,8 @@ static const char *allowed_origin(const struct server *server, const struct net_
     return request->origin && access_origin_allowed(&server->access, request->origin) ? request->origin : NULL;
 }
 
-static void answer_text(struct server *server, uint64_t id, const struct net_request *request, int status, const char *type, const char *text,
-                        size_t size)
+static void answer_text(struct server *server, uint64_t id, const struct net_request *request, int status, const char *type,
+                        const char *text, size_t size)
 {
     struct net_response response = {
         .status = status, .type = type, .body = packet_from_text(text, size), .allow_origin = allowed_origin(server, request)};
@@ -67,8 +67,8 @@ static void answer_options(struct server *server, uint64_t id, const struct net_
     struct net_response response = {.status = 204,
                                     .type = TEXT,
                                     .allow_origin = allowed_origin(server, request),
-                                    .headers = {"access-control-allow-methods:", "GET, POST", "access-control-allow-headers:",
-                                                "authorization, content-type"}};
+                                    .headers = {"access-control-allow-methods:", "GET, POST",
+                                                "access-control-allow-headers:", "authorization, content-type"}};
     net_respond(server->net, id, &response);
 }
 
@@ -123,7 +123,8 @@ static bool needs_token(const struct net_request *request)
     const struct route *route = find_route(request->path);
     if (request->method == NET_OPTIONS || (route && route->open))
         return false;
-    return request->upgrade || strcmp(request->path, "/") == 0 || strcmp(request->path, "/index.html") == 0 || !find_page(request->path);
+    return request->upgrade || strcmp(request->path, "/") == 0 || strcmp(request->path, "/index.html") == 0 ||
+           !find_page(request->path);
 }
 
 int http_admit(void *context, const struct net_request *request, unsigned *tag)
@@ -176,7 +177,8 @@ static int status_of(enum rpc_code code)
     return 500;
 }
 
-void http_answer_error(struct server *server, uint64_t request, const char *allow_origin, enum rpc_code code, const struct error *err)
+void http_answer_error(struct server *server, uint64_t request, const char *allow_origin, enum rpc_code code,
+                       const struct error *err)
 {
     json_t *body = json_pack("{s:o}", "error", dispatch_error_json(code, err));
     char *text = body ? json_dumps(body, JSON_COMPACT) : NULL;

@@ -38,7 +38,8 @@ static bool refuse_unknown(const json_t *object, const char *where, const struct
     const char *key;
     json_t *value;
     struct member_path first = {""};
-    json_object_foreach((json_t *)object, key, value) {
+    json_object_foreach((json_t *)object, key, value)
+    {
         if (find(table, key))
             continue;
         if (!first.text[0])
@@ -116,7 +117,8 @@ static bool read_member(const struct member *m, json_t *value, void *field, cons
     switch (m->kind) {
     case MEMBER_BOOL:
         *(bool *)field = json_is_true(value);
-        return json_is_boolean(value) || error_set(err, ERROR_USAGE, name, "%s: a boolean is wanted; true or false is accepted", name);
+        return json_is_boolean(value) ||
+               error_set(err, ERROR_USAGE, name, "%s: a boolean is wanted; true or false is accepted", name);
     case MEMBER_INTEGER: return read_integer(m, value, field, name, err);
     case MEMBER_NUMBER: return read_number(m, value, field, name, err);
     case MEMBER_STRING: return read_string(m, value, field, name, err);

@@ -25,10 +25,10 @@ enum member_kind {
 struct member {
     const char *name; /* NULL ends a table */
     enum member_kind kind;
-    size_t offset;    /* in the struct that is filled */
+    size_t offset; /* in the struct that is filled */
     double min, max;
-    size_t count;                 /* MEMBER_NUMBERS */
-    const char *const *choices;   /* MEMBER_CHOICE; ended by NULL */
+    size_t count;               /* MEMBER_NUMBERS */
+    const char *const *choices; /* MEMBER_CHOICE; ended by NULL */
     bool required;
 };
 

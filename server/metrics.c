@@ -30,8 +30,8 @@ static void head(FILE *out, const char *name, const char *type, const char *help
     fprintf(out, "# HELP %s %s\n# TYPE %s %s\n", name, help, name, type);
 }
 
-static void format_labelled(FILE *out, const char *name, const char *label, const char *const *values, const _Atomic uint64_t *counts,
-                            size_t count)
+static void format_labelled(FILE *out, const char *name, const char *label, const char *const *values,
+                            const _Atomic uint64_t *counts, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         fprintf(out, "%s{%s=\"%s\"} %" PRIu64 "\n", name, label, values[i], atomic_load(&counts[i]));

@@ -7,16 +7,16 @@
 #include "proto/frame_header.h"
 
 #define METRICS_ALGORITHMS 32
-#define METRICS_CODECS 4
-#define METRICS_BUCKETS 14
+#define METRICS_CODECS     4
+#define METRICS_BUCKETS    14
 
 /* Why a state that a client asked for was never rendered, or a frame never sent. */
 enum drop_reason {
-    DROP_BUSY,    /* a newer state came while another frame was being rendered */
-    DROP_CREDIT,  /* ... while the client had not acknowledged earlier frames */
-    DROP_SOCKET,  /* ... while the socket had not taken earlier data */
-    DROP_CLOSED,  /* the view or client was gone when the frame was ready */
-    DROP_FAILED,  /* rendering or encoding failed */
+    DROP_BUSY,   /* a newer state came while another frame was being rendered */
+    DROP_CREDIT, /* ... while the client had not acknowledged earlier frames */
+    DROP_SOCKET, /* ... while the socket had not taken earlier data */
+    DROP_CLOSED, /* the view or client was gone when the frame was ready */
+    DROP_FAILED, /* rendering or encoding failed */
     DROP_REASONS,
 };
 

@@ -16,10 +16,10 @@
 
 static_assert(PACKET_HEADROOM >= LWS_PRE, "lws_write() puts its frame header in front of the data");
 
-#define BODY_CHUNK (256u * 1024)
-#define TX_PACKET_SIZE (1u << 20) /* with 0, a frame of 200 kB took 54 sends, and copies */
+#define BODY_CHUNK      (256u * 1024)
+#define TX_PACKET_SIZE  (1u << 20) /* with 0, a frame of 200 kB took 54 sends, and copies */
 /* A body too long is read past up to here, so that its sender sees the answer and not a reset connection. */
-#define DISCARD_MAX (64ull << 20)
+#define DISCARD_MAX     (64ull << 20)
 #define CLOSE_TIMEOUT_S 5
 
 /* What lws forgets once the headers are parsed. */
@@ -185,7 +185,8 @@ static void refuse(struct net *net, struct connection *c, int status)
 {
     static const char challenge[] = "Bearer realm=\"gnomon\"";
     const char *text = reason_phrase(status);
-    struct net_response response = {.status = status, .type = "text/plain; charset=utf-8", .body = packet_from_text(text, strlen(text))};
+    struct net_response response = {
+        .status = status, .type = "text/plain; charset=utf-8", .body = packet_from_text(text, strlen(text))};
     if (status == 401) {
         response.headers[0] = "www-authenticate:";
         response.headers[1] = challenge;
@@ -252,7 +253,8 @@ static void http_body(struct connection *c, const void *in, size_t length)
 
 static bool add_header(struct lws *wsi, const char *name, const char *value, unsigned char **p, unsigned char *end)
 {
-    return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
+    return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p,
+                                       end) == 0;
 }
 
 static size_t body_size(const struct connection *c) { return c->response.body ? c->response.body->size - c->response.offset : 0; }
@@ -272,7 +274,8 @@ static bool send_headers(struct connection *c)
               add_header(c->wsi, "x-content-type-options:", "nosniff", &p, end) &&
               add_header(c->wsi, "referrer-policy:", "no-referrer", &p, end);
     if (ok && r->allow_origin)
-        ok = add_header(c->wsi, "access-control-allow-origin:", r->allow_origin, &p, end) && add_header(c->wsi, "vary:", "Origin", &p, end);
+        ok = add_header(c->wsi, "access-control-allow-origin:", r->allow_origin, &p, end) &&
+             add_header(c->wsi, "vary:", "Origin", &p, end);
     for (size_t i = 0; ok && i + 1 < sizeof r->headers / sizeof r->headers[0] && r->headers[i]; i += 2)
         ok = add_header(c->wsi, r->headers[i], r->headers[i + 1], &p, end);
     if (ok && must_close(c))
@@ -546,12 +549,14 @@ static bool probe(const char *host, unsigned port, struct error *err)
     snprintf(service, sizeof service, "%u", port);
     struct addrinfo hints = {.ai_flags = AI_NUMERICHOST | AI_PASSIVE, .ai_socktype = SOCK_STREAM}, *address = NULL;
     if (getaddrinfo(host, service, &hints, &address) != 0)
-        return error_set(err, ERROR_USAGE, "--listen", "--listen: %s is not an address of this machine; an IP address or localhost is accepted", host);
+        return error_set(err, ERROR_USAGE, "--listen",
+                         "--listen: %s is not an address of this machine; an IP address or localhost is accepted", host);
     int one = 1, s = socket(address->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
     bool ok = s >= 0 && setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) == 0 &&
               bind(s, address->ai_addr, address->ai_addrlen) == 0 && listen(s, 1) == 0;
     if (!ok)
-        error_set(err, ERROR_IO, "--listen", "--listen %s:%u: %s; a free address and port of this machine is wanted, port 0 picks one", host, port,
+        error_set(err, ERROR_IO, "--listen",
+                  "--listen %s:%u: %s; a free address and port of this machine is wanted, port 0 picks one", host, port,
                   strerror(errno));
     if (s >= 0)
         close(s);
@@ -563,8 +568,11 @@ static struct lws_context *make_context(struct net *net, const char *host, unsig
 {
     /* 10 s to the ping, 30 s to the hang-up; lws's default is 5 minutes. */
     static const lws_retry_bo_t idle_policy = {.secs_since_valid_ping = 10, .secs_since_valid_hangup = 30};
-    net->protocols[0] = (struct lws_protocols){.name = "http", .callback = on_http, .per_session_data_size = sizeof(struct peer),
-                                               .rx_buffer_size = 65536, .tx_packet_size = TX_PACKET_SIZE};
+    net->protocols[0] = (struct lws_protocols){.name = "http",
+                                               .callback = on_http,
+                                               .per_session_data_size = sizeof(struct peer),
+                                               .rx_buffer_size = 65536,
+                                               .tx_packet_size = TX_PACKET_SIZE};
     net->protocols[1] = net->protocols[0];
     net->protocols[1].name = subprotocol;
     net->protocols[1].callback = on_websocket;
@@ -584,7 +592,8 @@ static struct lws_context *make_context(struct net *net, const char *host, unsig
     return lws_create_context(&info);
 }
 
-struct net *net_create(const char *host, unsigned port, const char *subprotocol, const struct net_handlers *handlers, struct error *err)
+struct net *net_create(const char *host, unsigned port, const char *subprotocol, const struct net_handlers *handlers,
+                       struct error *err)
 {
     if (strcmp(host, "localhost") == 0)
         host = "127.0.0.1";
@@ -600,7 +609,8 @@ struct net *net_create(const char *host, unsigned port, const char *subprotocol,
     net->context = make_context(net, host, port, subprotocol);
     struct lws_vhost *vhost = net->context ? lws_get_vhost_by_name(net->context, "default") : NULL;
     if (!vhost || lws_get_vhost_listen_port(vhost) <= 0) {
-        error_set(err, ERROR_IO, "--listen", "--listen %s:%u: cannot listen there; a free address and port of this machine is wanted", host, port);
+        error_set(err, ERROR_IO, "--listen",
+                  "--listen %s:%u: cannot listen there; a free address and port of this machine is wanted", host, port);
         net_destroy(net);
         return NULL;
     }

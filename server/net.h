@@ -11,19 +11,19 @@ struct error;
 struct net;
 struct packet;
 
-#define NET_CONNECTIONS 256            /* requests and WebSockets together */
-#define NET_MESSAGE_MAX (1u << 20)     /* bytes; a longer WebSocket message closes with 1009, a longer body gets 413 */
-#define NET_BACKLOG_MAX (8u << 20)     /* bytes of unsent text; a client past it is hung up */
+#define NET_CONNECTIONS 256        /* requests and WebSockets together */
+#define NET_MESSAGE_MAX (1u << 20) /* bytes; a longer WebSocket message closes with 1009, a longer body gets 413 */
+#define NET_BACKLOG_MAX (8u << 20) /* bytes of unsent text; a client past it is hung up */
 
 enum net_method { NET_GET, NET_HEAD, NET_POST, NET_OPTIONS, NET_OTHER };
 
 /* Absent headers are NULL. Valid during the call. */
 struct net_request {
     enum net_method method;
-    bool upgrade;         /* to a WebSocket of the right subprotocol */
-    const char *path;     /* decoded, without the query */
+    bool upgrade;     /* to a WebSocket of the right subprotocol */
+    const char *path; /* decoded, without the query */
     const char *host, *origin;
-    const char *token;    /* Authorization: Bearer, else ?token= */
+    const char *token; /* Authorization: Bearer, else ?token= */
 };
 
 struct net_response {
@@ -51,12 +51,13 @@ struct net_handlers {
 };
 
 /* `host`: an address, or localhost; `port` 0: any free one. `subprotocol` and `handlers` are borrowed. ERROR_IO when it cannot listen. */
-struct net *net_create(const char *host, unsigned port, const char *subprotocol, const struct net_handlers *handlers, struct error *err);
+struct net *net_create(const char *host, unsigned port, const char *subprotocol, const struct net_handlers *handlers,
+                       struct error *err);
 /* Closes every connection (handlers.closed is called). Accepts NULL. */
 void net_destroy(struct net *net);
 unsigned net_port(const struct net *net);
 
-void net_run(struct net *net); /* until net_stop() */
+void net_run(struct net *net);  /* until net_stop() */
 void net_stop(struct net *net); /* any thread */
 void net_wake(struct net *net); /* any thread */
 

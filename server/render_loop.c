@@ -12,7 +12,7 @@
 #include "scene_store.h"
 
 /* How often to ask whether the GPU is done while there is nothing else to do. */
-#define POLL_US 500
+#define POLL_US        500
 /* Pictures waiting for an encoder; past this, rendering more would only age them. */
 #define ENCODE_BACKLOG 4
 
@@ -38,8 +38,8 @@ struct render_loop {
     struct scene_entry *in_flight_scene[RENDERER_IN_FLIGHT];
     size_t in_flight_algorithm[RENDERER_IN_FLIGHT];
     unsigned in_flight_count;
-    unsigned turn;           /* where the search for the next view begins */
-    bool snapshot_last;      /* snapshots and views take turns */
+    unsigned turn;      /* where the search for the next view begins */
+    bool snapshot_last; /* snapshots and views take turns */
     uint64_t token;
 };
 
@@ -141,7 +141,8 @@ static bool pick_snapshot(struct render_loop *loop, struct picked *out)
     out->job->header = (struct frame_header){
         .kind = GNMF_SNAPSHOT,
         .codec = snapshot->codec,
-        .flags = (uint16_t)(GNMF_KEY | GNMF_STILL | (snapshot->codec == GNMF_PNG || snapshot->codec == GNMF_EXR ? GNMF_LOSSLESS : 0)),
+        .flags =
+            (uint16_t)(GNMF_KEY | GNMF_STILL | (snapshot->codec == GNMF_PNG || snapshot->codec == GNMF_EXR ? GNMF_LOSSLESS : 0)),
         .request_id = snapshot->request_id,
     };
     return true;
@@ -162,7 +163,8 @@ static bool snapshot_is_late(const struct snapshot *snapshot, struct error *err)
     if (atomic_load(&snapshot->cancelled))
         return !error_set(err, ERROR_TRY_AGAIN, NULL, "the request was cancelled");
     if (snapshot->deadline_us && clock_us() > snapshot->deadline_us)
-        return !error_set(err, ERROR_TRY_AGAIN, "deadline_ms", "deadline_ms: the deadline passed before this picture's turn came");
+        return !error_set(err, ERROR_TRY_AGAIN, "deadline_ms",
+                          "deadline_ms: the deadline passed before this picture's turn came");
     return false;
 }
 
@@ -423,7 +425,8 @@ void render_loop_destroy(struct render_loop *loop)
     free(loop);
 }
 
-bool render_loop_open(struct render_loop *loop, uint32_t view, uint64_t session, struct scene_entry *scene, const struct view_state *state)
+bool render_loop_open(struct render_loop *loop, uint32_t view, uint64_t session, struct scene_entry *scene,
+                      const struct view_state *state)
 {
     assert(view != 0 && scene->status == SCENE_READY);
     bool found = false;

@@ -14,28 +14,28 @@ struct metrics;
 struct render_loop;
 struct scene_entry;
 
-#define RENDER_LOOP_VIEWS 64
+#define RENDER_LOOP_VIEWS     64
 #define RENDER_LOOP_SNAPSHOTS 16
 
 /* One picture on request, beside the streams. Made and freed by the network thread; in between the render thread only reads it. */
 struct snapshot {
     struct snapshot *link;
-    struct scene_entry *scene;        /* one reference */
+    struct scene_entry *scene; /* one reference */
     struct render_settings settings;
     enum gnmf_codec codec;
     int quality;
     uint64_t session;
     uint32_t request_id;
-    uint64_t deadline_us;             /* clock_us(); 0: none. Not started after it */
-    _Atomic bool cancelled;           /* the client is gone */
+    uint64_t deadline_us;   /* clock_us(); 0: none. Not started after it */
+    _Atomic bool cancelled; /* the client is gone */
 };
 
 struct render_loop_options {
     struct renderer_options renderer;
-    struct job_pool *pool;            /* outlives the loop */
-    struct encode_pool *encoders;     /* likewise; sends back the snapshots too */
-    struct metrics *metrics;          /* likewise */
-    void (*lost)(void *context);      /* called on the render thread when the device is lost for good */
+    struct job_pool *pool;        /* outlives the loop */
+    struct encode_pool *encoders; /* likewise; sends back the snapshots too */
+    struct metrics *metrics;      /* likewise */
+    void (*lost)(void *context);  /* called on the render thread when the device is lost for good */
     void *context;
 };
 
@@ -50,7 +50,8 @@ void render_loop_destroy(struct render_loop *loop);
 /* All below: any thread, never wait for the GPU. */
 
 /* Takes its own reference to `scene` (READY). False when RENDER_LOOP_VIEWS are open. */
-bool render_loop_open(struct render_loop *loop, uint32_t view, uint64_t session, struct scene_entry *scene, const struct view_state *state);
+bool render_loop_open(struct render_loop *loop, uint32_t view, uint64_t session, struct scene_entry *scene,
+                      const struct view_state *state);
 /* Replaces the state. */
 void render_loop_update(struct render_loop *loop, uint32_t view, const struct view_state *state);
 void render_loop_close(struct render_loop *loop, uint32_t view);

@@ -104,7 +104,7 @@ const char *scene_catalog_find(const struct scene_catalog *catalog, const char *
     for (size_t i = 0; i < catalog->files.count; i++)
         if (strcmp(catalog->files.data[i].name, name) == 0)
             return catalog->files.data[i].path;
-    error_set(err, ERROR_NO_INPUT, "scene", "scene: this server has no scene \"%s\"; server.hello lists the names, and builtin:NAME is always there",
-              name);
+    error_set(err, ERROR_NO_INPUT, "scene",
+              "scene: this server has no scene \"%s\"; server.hello lists the names, and builtin:NAME is always there", name);
     return NULL;
 }

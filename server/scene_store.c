@@ -56,8 +56,8 @@ static void *loader_main(void *argument)
     return NULL;
 }
 
-struct scene_store *scene_store_create(const struct scene_catalog *catalog, size_t capacity, void (*done)(void *context), void *context,
-                                       struct error *err)
+struct scene_store *scene_store_create(const struct scene_catalog *catalog, size_t capacity, void (*done)(void *context),
+                                       void *context, struct error *err)
 {
     struct scene_store *store = calloc(1, sizeof *store);
     if (!store) {
@@ -136,7 +136,8 @@ static struct scene_entry **find_idle(struct scene_store *store)
 {
     struct scene_entry **oldest = NULL;
     for (struct scene_entry **at = &store->entries; *at; at = &(*at)->link)
-        if ((*at)->status != SCENE_LOADING && atomic_load(&(*at)->refs) == 0 && (!oldest || (*at)->last_used < (*oldest)->last_used))
+        if ((*at)->status != SCENE_LOADING && atomic_load(&(*at)->refs) == 0 &&
+            (!oldest || (*at)->last_used < (*oldest)->last_used))
             oldest = at;
     return oldest;
 }
@@ -193,8 +194,8 @@ struct scene_entry *scene_store_get(struct scene_store *store, const char *name,
         if (store->count >= store->capacity) {
             struct scene_entry **idle = find_idle(store);
             if (!idle) {
-                error_set(err, ERROR_TRY_AGAIN, "scene", "scene: %zu scenes are in use, and this server keeps no more; close a view first",
-                          store->count);
+                error_set(err, ERROR_TRY_AGAIN, "scene",
+                          "scene: %zu scenes are in use, and this server keeps no more; close a view first", store->count);
                 return NULL;
             }
             *evicted = unlink_entry(store, idle);

@@ -16,7 +16,7 @@ struct scene;
 enum scene_status { SCENE_LOADING, SCENE_READY, SCENE_FAILED };
 
 struct scene_entry {
-    struct scene_entry *link;   /* in the store, or in a list handed out */
+    struct scene_entry *link; /* in the store, or in a list handed out */
     char name[SCENE_NAME_MAX];
     char *source;               /* what scene_load() takes */
     enum scene_status status;   /* network thread */
@@ -32,8 +32,8 @@ struct scene_entry {
 struct scene_store;
 
 /* At most `capacity` scenes are kept. `done` is called on the loader thread after each load. */
-struct scene_store *scene_store_create(const struct scene_catalog *catalog, size_t capacity, void (*done)(void *context), void *context,
-                                       struct error *err);
+struct scene_store *scene_store_create(const struct scene_catalog *catalog, size_t capacity, void (*done)(void *context),
+                                       void *context, struct error *err);
 /* Ends the loader thread, once its present load is through, and returns all entries, linked, still the store's. */
 struct scene_entry *scene_store_stop(struct scene_store *store);
 /* Stops it. Entries must be unreferenced, and without a render_scene. Accepts NULL. */
@@ -44,9 +44,9 @@ void scene_store_destroy(struct scene_store *store);
  * then to scene_entry_destroy(); or NULL. */
 struct scene_entry *scene_store_get(struct scene_store *store, const char *name, struct scene_entry **evicted, struct error *err);
 
-struct scene_entry *scene_entry_ref(struct scene_entry *entry);  /* any thread, by a holder */
-void scene_entry_unref(struct scene_entry *entry);               /* any thread; accepts NULL */
-void scene_entry_destroy(struct scene_entry *entry);             /* render thread, once evicted; accepts NULL */
+struct scene_entry *scene_entry_ref(struct scene_entry *entry); /* any thread, by a holder */
+void scene_entry_unref(struct scene_entry *entry);              /* any thread; accepts NULL */
+void scene_entry_destroy(struct scene_entry *entry);            /* render thread, once evicted; accepts NULL */
 
 /* Notes finished loads in their entries' status; true when there were any. */
 bool scene_store_settle(struct scene_store *store);

@@ -10,11 +10,11 @@
 #include "http.h"
 #include "methods/methods.h"
 
-#define FIRST_SCENE "builtin:box"
+#define FIRST_SCENE         "builtin:box"
 /* One core encodes 1080p at 5.6 ms (libjpeg-turbo, q80): half the threads are plenty beside a renderer. */
 #define ENCODERS_OF_THREADS 2
-#define ENCODERS_MOST 4
-#define LOAD_POLL_US 2000
+#define ENCODERS_MOST       4
+#define LOAD_POLL_US        2000
 
 static void wake_net(void *context)
 {
@@ -151,9 +151,10 @@ static bool fill_access(struct access *access, const struct server_options *o, s
     access->origins = o->origins;
     access->origin_count = o->origin_count;
     if (!access->loopback && !o->token_file)
-        return error_set(err, ERROR_USAGE, "--listen",
-                         "--listen %s is reachable from other machines and needs --token-file; without one a loopback address is accepted",
-                         o->host);
+        return error_set(
+            err, ERROR_USAGE, "--listen",
+            "--listen %s is reachable from other machines and needs --token-file; without one a loopback address is accepted",
+            o->host);
     return !o->token_file || access_read_tokens(access, o->token_file, err);
 }
 

@@ -16,15 +16,15 @@
 
 struct call;
 
-#define SERVER_SUBPROTOCOL "gnomon.v1"
-#define SERVER_SCENES_MAX 8            /* kept in memory */
-#define SERVER_STREAM_SIDE_MAX 8192    /* pixels; the frame header has 16 bits */
-#define SERVER_STREAM_PIXELS_MAX (1u << 25)
+#define SERVER_SUBPROTOCOL         "gnomon.v1"
+#define SERVER_SCENES_MAX          8    /* kept in memory */
+#define SERVER_STREAM_SIDE_MAX     8192 /* pixels; the frame header has 16 bits */
+#define SERVER_STREAM_PIXELS_MAX   (1u << 25)
 #define SERVER_SNAPSHOT_PIXELS_MAX (1u << 26)
 
 struct server {
-    struct common_options *defaults;   /* of every view; borrowed */
-    const char *first_scene;           /* name; what view.open shows when it names none */
+    struct common_options *defaults; /* of every view; borrowed */
+    const char *first_scene;         /* name; what view.open shows when it names none */
     struct access access;
     struct scene_catalog catalog;
     struct scene_store *scenes;
@@ -34,8 +34,8 @@ struct server {
     struct net_handlers handlers;
     struct metrics metrics;
     struct sessions sessions;
-    struct call *waiting;              /* for their scenes */
-    struct call *pictures;             /* for their snapshots */
+    struct call *waiting;  /* for their scenes */
+    struct call *pictures; /* for their snapshots */
     atomic_bool device_lost;
 };
 
@@ -45,8 +45,8 @@ struct server_options {
     unsigned port;
     const char *const *scene_folders;
     size_t scene_folder_count;
-    const char *scene;                 /* path or builtin:..., NULL: the built-in default */
-    const char *token_file;            /* or NULL */
+    const char *scene;      /* path or builtin:..., NULL: the built-in default */
+    const char *token_file; /* or NULL */
     const char *const *origins;
     size_t origin_count;
     struct common_options *common;

@@ -17,10 +17,10 @@ struct scene_entry;
 struct view_record {
     uint32_t id;
     uint64_t session;
-    struct scene_entry *scene;   /* one reference */
-    double size[2], dpr;         /* CSS pixels, and device pixels in each */
+    struct scene_entry *scene; /* one reference */
+    double size[2], dpr;       /* CSS pixels, and device pixels in each */
     struct camera_choice camera;
-    char camera_name[64];        /* what camera.name points to */
+    char camera_name[64]; /* what camera.name points to */
     struct view_state state;
     uint64_t frames_told, bytes_told; /* as of the last view.stats */
     struct view_record *link;

@@ -11,17 +11,17 @@
 #include "renderer.h"
 
 /* Frames submitted and not acknowledged. Two keep the renderer busy while one is under way. */
-#define STREAM_IN_FLIGHT 2
+#define STREAM_IN_FLIGHT      2
 /* After this long without a change the picture is sent once more, at STREAM_STILL_QUALITY or better: trame's habit. */
 #define STREAM_STILL_AFTER_US 200000
-#define STREAM_STILL_QUALITY 90
+#define STREAM_STILL_QUALITY  90
 
 /* Everything that a view shows; whole states replace each other. */
 struct view_state {
     struct render_settings settings;
     enum gnmf_codec codec;
-    int quality;            /* 1..100 while moving */
-    double fps_max;         /* frames a second; 0: no limit */
+    int quality;    /* 1..100 while moving */
+    double fps_max; /* frames a second; 0: no limit */
     bool paused;
     uint32_t input_seq;     /* echoed in the header of frames that show this state */
     uint64_t input_time_us; /* likewise; the client's clock */
@@ -33,15 +33,15 @@ struct stream_frame {
 };
 
 struct stream_view {
-    uint32_t id;            /* 0: slot free */
+    uint32_t id; /* 0: slot free */
     uint64_t session;
     struct scene_entry *scene;
     struct view_state wanted;
     uint64_t revision, shown; /* of `wanted`, and of the newest frame submitted */
     bool still_shown;
-    bool blocked;           /* its socket has pending writes */
+    bool blocked; /* its socket has pending writes */
     uint64_t changed_us, submitted_us;
-    uint64_t frame_number;  /* of the newest frame submitted; 0: none */
+    uint64_t frame_number; /* of the newest frame submitted; 0: none */
     struct stream_frame in_flight[STREAM_IN_FLIGHT];
     unsigned in_flight_count;
 

@@ -13,7 +13,7 @@
 #include "output.h"
 
 /* As far as a coordinate's square stays finite in fp32. */
-#define COORDINATE_MAX 1e18
+#define COORDINATE_MAX  1e18
 #define EXPOSURE_MAX_EV 64
 
 struct look_at_members {
@@ -22,7 +22,8 @@ struct look_at_members {
 
 static const struct member look_at_table[] = {
     {"eye", MEMBER_NUMBERS, offsetof(struct look_at_members, eye), -COORDINATE_MAX, COORDINATE_MAX, .count = 3, .required = true},
-    {"target", MEMBER_NUMBERS, offsetof(struct look_at_members, target), -COORDINATE_MAX, COORDINATE_MAX, .count = 3, .required = true},
+    {"target", MEMBER_NUMBERS, offsetof(struct look_at_members, target), -COORDINATE_MAX, COORDINATE_MAX, .count = 3,
+     .required = true},
     {"up", MEMBER_NUMBERS, offsetof(struct look_at_members, up), -COORDINATE_MAX, COORDINATE_MAX, .count = 3},
     {"fov", MEMBER_NUMBER, offsetof(struct look_at_members, fov), FOV_MIN_DEG, FOV_MAX_DEG},
     {0},
@@ -47,7 +48,8 @@ bool wire_read_camera(const json_t *value, struct camera_choice *out, char name[
         return read_look_at(value, out, err);
     bool is_name = json_is_string(value) && json_string_length(value) > 0 && json_string_length(value) < WIRE_CAMERA_NAME_MAX;
     if (!is_name && !(json_is_integer(value) && json_integer_value(value) >= 0))
-        return error_set(err, ERROR_USAGE, "camera", "camera has the wrong form; a name, an index or {eye, target, up, fov} is accepted");
+        return error_set(err, ERROR_USAGE, "camera",
+                         "camera has the wrong form; a name, an index or {eye, target, up, fov} is accepted");
     if (is_name)
         snprintf(name, WIRE_CAMERA_NAME_MAX, "%s", json_string_value(value));
     else
@@ -74,7 +76,8 @@ static bool read_light_key(struct light *light, const char *key, const json_t *v
     return light_set(light, key, values, err);
 }
 
-bool wire_read_light(const struct scene *scene, const json_t *value, const struct light *light, struct light *out, struct error *err)
+bool wire_read_light(const struct scene *scene, const json_t *value, const struct light *light, struct light *out,
+                     struct error *err)
 {
     const json_t *kind_name = json_object_get(value, "kind");
     int kind = json_is_string(kind_name) ? name_index(light_kind_names, json_string_value(kind_name)) : -1;
@@ -85,9 +88,8 @@ bool wire_read_light(const struct scene *scene, const json_t *value, const struc
         read.position = dvec3_add(light->position, scene->origin);
     const char *key;
     json_t *item;
-    json_object_foreach((json_t *)value, key, item)
-        if (strcmp(key, "kind") != 0 && !read_light_key(&read, key, item, err))
-            return false;
+    json_object_foreach((json_t *)value, key,
+                        item) if (strcmp(key, "kind") != 0 && !read_light_key(&read, key, item, err)) return false;
     if (!light_check(&read, err))
         return false;
     *out = light_from_world(scene, &read);
@@ -98,7 +100,8 @@ bool wire_read_lights(const struct scene *scene, const json_t *value, struct ren
 {
     size_t count = json_array_size(value);
     if (!json_is_array(value) || count > RENDERER_LIGHTS_MAX)
-        return error_set(err, ERROR_USAGE, "lights", "lights: an array is wanted; 0 to %d lights are accepted", RENDERER_LIGHTS_MAX);
+        return error_set(err, ERROR_USAGE, "lights", "lights: an array is wanted; 0 to %d lights are accepted",
+                         RENDERER_LIGHTS_MAX);
     struct light lights[RENDERER_LIGHTS_MAX];
     for (size_t i = 0; i < count; i++)
         if (!wire_read_light(scene, json_array_get(value, i), NULL, &lights[i], err))
@@ -113,8 +116,8 @@ bool wire_read_exposure(const json_t *value, struct render_settings *settings, s
     const char *text = json_string_value(value);
     bool is_auto = text && strcmp(text, "auto") == 0;
     if (!is_auto && !(json_is_number(value) && fabs(json_number_value(value)) <= EXPOSURE_MAX_EV))
-        return error_set(err, ERROR_USAGE, "exposure", "exposure has the wrong form; \"auto\" or -%d to %d stops are accepted", EXPOSURE_MAX_EV,
-                         EXPOSURE_MAX_EV);
+        return error_set(err, ERROR_USAGE, "exposure", "exposure has the wrong form; \"auto\" or -%d to %d stops are accepted",
+                         EXPOSURE_MAX_EV, EXPOSURE_MAX_EV);
     settings->exposure_auto = is_auto;
     if (!is_auto)
         settings->exposure_ev = json_number_value(value);
@@ -123,7 +126,8 @@ bool wire_read_exposure(const json_t *value, struct render_settings *settings, s
 
 bool wire_check_aa(uint64_t aa, struct error *err)
 {
-    return aa == 1 || aa == 4 || aa == 16 || error_set(err, ERROR_USAGE, "aa", "aa: no such number of samples a pixel; 1, 4 or 16 is accepted");
+    return aa == 1 || aa == 4 || aa == 16 ||
+           error_set(err, ERROR_USAGE, "aa", "aa: no such number of samples a pixel; 1, 4 or 16 is accepted");
 }
 
 json_t *wire_camera(const struct scene *scene, const struct camera *camera)
@@ -161,6 +165,6 @@ json_t *wire_scene(const char *name, const struct scene *scene)
                          : json_pack("{s:o, s:o}", "min", listing_point(dvec3_add(scene->bounds.min, scene->origin)), "max",
                                      listing_point(dvec3_add(scene->bounds.max, scene->origin)));
     return json_pack("{s:s, s:I, s:I, s:I, s:o, s:o, s:o}", "scene", name, "triangles", (json_int_t)(scene->index_count / 3),
-                     "drawn_triangles", (json_int_t)scene->drawn_triangle_count, "vertices", (json_int_t)scene->vertex_count, "bounds", bounds,
-                     "cameras", cameras, "lights", lights);
+                     "drawn_triangles", (json_int_t)scene->drawn_triangle_count, "vertices", (json_int_t)scene->vertex_count,
+                     "bounds", bounds, "cameras", cameras, "lights", lights);
 }

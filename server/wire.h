@@ -17,7 +17,8 @@ bool wire_read_camera(const json_t *value, struct camera_choice *out, char name[
 
 /* {kind, and --light's keys}. `light` is the light to change: keys not given stay, unless the kind changes; NULL for a new one, whose
  * kind is required. Scene space in and out. */
-bool wire_read_light(const struct scene *scene, const json_t *value, const struct light *light, struct light *out, struct error *err);
+bool wire_read_light(const struct scene *scene, const json_t *value, const struct light *light, struct light *out,
+                     struct error *err);
 /* An array of new lights; replaces those in `settings`. */
 bool wire_read_lights(const struct scene *scene, const json_t *value, struct render_settings *settings, struct error *err);
 

@@ -12,11 +12,11 @@
 #include "numbers.h"
 #include "server.h"
 
-#define HOST_DEFAULT "127.0.0.1"
-#define PORT_DEFAULT 8080
+#define HOST_DEFAULT     "127.0.0.1"
+#define PORT_DEFAULT     8080
 /* The promise is 5 s from the signal to the exit: whatever still renders or loads then is abandoned. */
 #define SHUTDOWN_SECONDS 4
-#define LIST_MAX 64
+#define LIST_MAX         64
 
 struct serve_options {
     char host[256];
@@ -35,7 +35,8 @@ static bool set_listen(void *target, const char *value, struct error *err)
     bool bracketed = length > 2 && value[0] == '[' && value[length - 1] == ']';
     if (length == 0 || length >= sizeof o->host || !number_parse_unsigned(colon + 1, 0, 65535, &port) ||
         (!bracketed && memchr(value, ':', length)))
-        return error_set(err, ERROR_USAGE, "listen", "ADDR:PORT is accepted, such as 127.0.0.1:8080, [::1]:8080 or 127.0.0.1:0 for a free port");
+        return error_set(err, ERROR_USAGE, "listen",
+                         "ADDR:PORT is accepted, such as 127.0.0.1:8080, [::1]:8080 or 127.0.0.1:0 for a free port");
     snprintf(o->host, sizeof o->host, "%.*s", (int)(bracketed ? length - 2 : length), value + bracketed);
     o->port = (unsigned)port;
     return true;
@@ -60,7 +61,8 @@ static bool set_origin(void *target, const char *value, struct error *err)
     struct serve_options *o = target;
     const char *host = strstr(value, "://");
     if (!host || !host[3] || strchr(host + 3, '/'))
-        return error_set(err, ERROR_USAGE, "allow-origin", "SCHEME://HOST[:PORT] without a path is accepted, such as https://example.org");
+        return error_set(err, ERROR_USAGE, "allow-origin",
+                         "SCHEME://HOST[:PORT] without a path is accepted, such as https://example.org");
     return append(o->origins, &o->origin_count, value, err);
 }
 
@@ -81,8 +83,8 @@ static bool set_token_file(void *target, const char *value, struct error *err)
 }
 
 static const struct option serve_table[] = {
-    {"listen", "ADDR:PORT", "where to listen (default 127.0.0.1:8080; port 0: any free one); not a loopback address: needs --token-file",
-     set_listen},
+    {"listen", "ADDR:PORT",
+     "where to listen (default 127.0.0.1:8080; port 0: any free one); not a loopback address: needs --token-file", set_listen},
     {"scenes", "DIR", "offer the .gltf and .glb files below DIR; repeat for more", set_scenes},
     {"scene", "SCENE", "the scene that clients see first: a file or builtin:NAME (default builtin:box)", set_scene},
     {"token-file", "FILE", "let in only who shows a token; lines 'view TOKEN' or 'control TOKEN'", set_token_file},
@@ -186,7 +188,8 @@ static bool serve(const struct serve_options *o, struct stopper *stopper, struct
                                      .pool = pool};
     if (server_init(server, &options, err) && server_load_first(server, err)) {
         run(stopper, server, o);
-        ok = !atomic_load(&server->device_lost) || error_set(err, ERROR_TRY_AGAIN, NULL, "the GPU device was lost; start the server again");
+        ok = !atomic_load(&server->device_lost) ||
+             error_set(err, ERROR_TRY_AGAIN, NULL, "the GPU device was lost; start the server again");
     }
     server_finish(server);
     free(server);

@@ -36,7 +36,8 @@ void jpeg_encoder_destroy(struct jpeg_encoder *encoder)
 static bool reserve(struct jpeg_encoder *encoder, unsigned long wanted, struct error *err)
 {
     if (wanted == (unsigned long)-1)
-        return error_set(err, ERROR_USAGE, "size", "a picture of this size cannot be encoded as JPEG; a side may have at most 65500 pixels");
+        return error_set(err, ERROR_USAGE, "size",
+                         "a picture of this size cannot be encoded as JPEG; a side may have at most 65500 pixels");
     if (wanted <= encoder->capacity)
         return true;
     unsigned char *grown = realloc(encoder->scratch, wanted);

@@ -10,9 +10,10 @@
 
 static json_t *limits(void)
 {
-    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "message_bytes", (int)NET_MESSAGE_MAX, "views", SESSION_VIEWS_MAX,
-                     "lights", RENDERER_LIGHTS_MAX, "stream_side", SERVER_STREAM_SIDE_MAX, "stream_pixels", (int)SERVER_STREAM_PIXELS_MAX,
-                     "snapshot_side", RENDERER_SIZE_MAX, "snapshot_pixels", (int)SERVER_SNAPSHOT_PIXELS_MAX, "in_flight", STREAM_IN_FLIGHT);
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "message_bytes", (int)NET_MESSAGE_MAX, "views",
+                     SESSION_VIEWS_MAX, "lights", RENDERER_LIGHTS_MAX, "stream_side", SERVER_STREAM_SIDE_MAX, "stream_pixels",
+                     (int)SERVER_STREAM_PIXELS_MAX, "snapshot_side", RENDERER_SIZE_MAX, "snapshot_pixels",
+                     (int)SERVER_SNAPSHOT_PIXELS_MAX, "in_flight", STREAM_IN_FLIGHT);
 }
 
 static json_t *capabilities(const struct server *server)
@@ -23,8 +24,8 @@ static json_t *capabilities(const struct server *server)
     for (size_t i = 0; methods[i]; i++)
         json_array_append_new(names, json_string(methods[i]->name));
     return json_pack("{s:[s,s], s:[s,s,s,s], s:o, s:o, s:o}", "codecs", codec_names[GNMF_JPEG], codec_names[GNMF_PNG], "formats",
-                     codec_names[GNMF_PNG], codec_names[GNMF_JPEG], codec_names[GNMF_WEBP], codec_names[GNMF_EXR], "show", shows, "methods",
-                     names, "device", json_text(render_loop_device(server->loop)->renderer));
+                     codec_names[GNMF_PNG], codec_names[GNMF_JPEG], codec_names[GNMF_WEBP], codec_names[GNMF_EXR], "show", shows,
+                     "methods", names, "device", json_text(render_loop_device(server->loop)->renderer));
 }
 
 /* The server's own first, then its files, then what is built in. */
@@ -37,7 +38,8 @@ static json_t *scenes(const struct server *server)
         json_array_append_new(list, json_pack("{s:s, s:s}", "name", server->catalog.files.data[i].name, "source", "file"));
     json_t *builtins = listing_scenes(), *entry;
     size_t index;
-    json_array_foreach(builtins, index, entry) {
+    json_array_foreach(builtins, index, entry)
+    {
         json_object_set_new(entry, "source", json_string("builtin"));
         const char *name = json_string_value(json_object_get(entry, "name"));
         if (!name || strcmp(name, server->first_scene) != 0)
@@ -52,9 +54,9 @@ json_t *hello_params(struct server *server, uint64_t session)
     char name[24];
     const struct session *s = sessions_find(&server->sessions, session);
     snprintf(name, sizeof name, "%llx", (unsigned long long)session);
-    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:o}", "version", GNOMON_VERSION, "protocol", PROTOCOL_VERSION, "session", name,
-                     "role", s && s->role == ROLE_CONTROL ? "control" : "view", "capabilities", capabilities(server), "limits", limits(),
-                     "scenes", scenes(server), "algorithms", listing_algorithms());
+    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:o}", "version", GNOMON_VERSION, "protocol", PROTOCOL_VERSION,
+                     "session", name, "role", s && s->role == ROLE_CONTROL ? "control" : "view", "capabilities",
+                     capabilities(server), "limits", limits(), "scenes", scenes(server), "algorithms", listing_algorithms());
 }
 
 json_t *view_stats(struct server *server, const struct view_record *view, double seconds, uint64_t *frames, uint64_t *bytes)
@@ -78,8 +80,9 @@ json_t *view_stats(struct server *server, const struct view_record *view, double
     json_int_t sent = (json_int_t)(v.bytes - *bytes);
     *frames = v.frames;
     *bytes = v.bytes;
-    return json_pack("{s:I, s:f, s:f, s:o, s:f, s:I, s:I, s:i, s:f, s:s, s:s, s:o, s:I}", "view", (json_int_t)view->id, "fps", fps, "frame_ms",
-                     v.last.frame_ms, "passes", passes, "encode_ms", v.encode_us / 1000.0, "bytes", sent, "dropped", (json_int_t)v.dropped,
-                     "in_flight", (int)v.in_flight_count, "rtt_ms", (double)v.rtt_us / 1000.0, "algorithm", settings->system->name, "settings",
-                     algorithm, "params", params, "shadow_bytes", (json_int_t)v.last.shadow_bytes);
+    return json_pack("{s:I, s:f, s:f, s:o, s:f, s:I, s:I, s:i, s:f, s:s, s:s, s:o, s:I}", "view", (json_int_t)view->id, "fps",
+                     fps, "frame_ms", v.last.frame_ms, "passes", passes, "encode_ms", v.encode_us / 1000.0, "bytes", sent,
+                     "dropped", (json_int_t)v.dropped, "in_flight", (int)v.in_flight_count, "rtt_ms", (double)v.rtt_us / 1000.0,
+                     "algorithm", settings->system->name, "settings", algorithm, "params", params, "shadow_bytes",
+                     (json_int_t)v.last.shadow_bytes);
 }

@@ -12,12 +12,24 @@ struct light_params {
 };
 
 #define AT(field) offsetof(struct light_params, field)
-#define INPUT_MEMBERS                                                         \
-    {"input_seq", MEMBER_INTEGER, AT(input_seq), 0, UINT32_MAX},              \
-    {"input_time_us", MEMBER_INTEGER, AT(input_time_us), 0, MEMBER_INTEGER_MAX}, {0}
-#define VIEW_MEMBER {"view", MEMBER_INTEGER, AT(view), 1, UINT32_MAX, .required = true}
-#define INDEX_MEMBER {"index", MEMBER_INTEGER, AT(index), 0, RENDERER_LIGHTS_MAX - 1, .required = true}
-#define LIGHT_MEMBER {"light", MEMBER_ANY, AT(light), .required = true}
+#define INPUT_MEMBERS                                                                \
+    {"input_seq", MEMBER_INTEGER, AT(input_seq), 0, UINT32_MAX},                     \
+        {"input_time_us", MEMBER_INTEGER, AT(input_time_us), 0, MEMBER_INTEGER_MAX}, \
+    {                                                                                \
+        0                                                                            \
+    }
+#define VIEW_MEMBER                                                       \
+    {                                                                     \
+        "view", MEMBER_INTEGER, AT(view), 1, UINT32_MAX, .required = true \
+    }
+#define INDEX_MEMBER                                                                     \
+    {                                                                                    \
+        "index", MEMBER_INTEGER, AT(index), 0, RENDERER_LIGHTS_MAX - 1, .required = true \
+    }
+#define LIGHT_MEMBER                                     \
+    {                                                    \
+        "light", MEMBER_ANY, AT(light), .required = true \
+    }
 
 static const struct member add_members[] = {VIEW_MEMBER, LIGHT_MEMBER, INPUT_MEMBERS};
 static const struct member set_members[] = {VIEW_MEMBER, INDEX_MEMBER, LIGHT_MEMBER, INPUT_MEMBERS};
@@ -38,10 +50,12 @@ static bool check_index(const struct view_record *view, uint64_t index, struct e
     return error_set(err, ERROR_USAGE, "index", "index: the view has %zu lights; 0 to %zu is accepted", count, count - 1);
 }
 
-static enum outcome publish(struct server *server, struct view_record *view, const struct light_params *p, uint64_t index, json_t **result)
+static enum outcome publish(struct server *server, struct view_record *view, const struct light_params *p, uint64_t index,
+                            json_t **result)
 {
     view_publish(server, view, p->input_seq, p->input_time_us);
-    *result = json_pack("{s:I, s:o}", "index", (json_int_t)index, "lights", wire_lights(view->scene->scene, &view->state.settings));
+    *result =
+        json_pack("{s:I, s:o}", "index", (json_int_t)index, "lights", wire_lights(view->scene->scene, &view->state.settings));
     return OUTCOME_DONE;
 }
 
@@ -78,8 +92,8 @@ static enum outcome set_light(struct server *server, struct call *call, const vo
     return publish(server, view, p, p->index, result);
 }
 
-static enum outcome remove_light(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                                 struct error *err)
+static enum outcome remove_light(struct server *server, struct call *call, const void *params, struct given given,
+                                 json_t **result, struct error *err)
 {
     const struct light_params *p = params;
     struct view_record *view = view_of(server, call, p);

@@ -8,8 +8,8 @@
 #include "wire.h"
 
 #define SNAPSHOT_QUALITY_DEFAULT 90
-#define DEADLINE_MAX_MS 3600000
-#define WEBP_SIDE_MAX 16383
+#define DEADLINE_MAX_MS          3600000
+#define WEBP_SIDE_MAX            16383
 
 struct snapshot_params {
     const char *scene;
@@ -21,7 +21,23 @@ struct snapshot_params {
     double ambient, time;
 };
 
-enum { SCENE, SIZE, CAMERA, LIGHTS, ALGORITHM, SHOW, FORMAT, QUALITY, TIME, DEADLINE, REQUEST_ID, EXPOSURE, AMBIENT, TONEMAP, AA };
+enum {
+    SCENE,
+    SIZE,
+    CAMERA,
+    LIGHTS,
+    ALGORITHM,
+    SHOW,
+    FORMAT,
+    QUALITY,
+    TIME,
+    DEADLINE,
+    REQUEST_ID,
+    EXPOSURE,
+    AMBIENT,
+    TONEMAP,
+    AA
+};
 
 #define AT(field) offsetof(struct snapshot_params, field)
 static const struct member snapshot_members[] = {
@@ -50,13 +66,14 @@ static bool apply_size(struct render_settings *settings, const double size[2], e
     settings->height = (uint32_t)size[1];
     if (settings->width != size[0] || settings->height != size[1] || settings->width > side || settings->height > side ||
         (uint64_t)settings->width * settings->height > SERVER_SNAPSHOT_PIXELS_MAX)
-        return error_set(err, ERROR_USAGE, "size", "size: %g x %g; whole numbers of 1 to %u pixels a side and at most %u together are accepted",
-                         size[0], size[1], side, SERVER_SNAPSHOT_PIXELS_MAX);
+        return error_set(err, ERROR_USAGE, "size",
+                         "size: %g x %g; whole numbers of 1 to %u pixels a side and at most %u together are accepted", size[0],
+                         size[1], side, SERVER_SNAPSHOT_PIXELS_MAX);
     return true;
 }
 
-static bool apply_picture(const struct scene *scene, const struct snapshot_params *p, struct given given, struct render_settings *settings,
-                          struct error *err)
+static bool apply_picture(const struct scene *scene, const struct snapshot_params *p, struct given given,
+                          struct render_settings *settings, struct error *err)
 {
     if (is_given(given, LIGHTS) && !wire_read_lights(scene, p->lights, settings, err))
         return false;
@@ -116,7 +133,8 @@ static enum outcome start(struct server *server, struct call *call, struct scene
     snapshot->deadline_us = p->deadline_ms ? clock_us() + p->deadline_ms * 1000 : 0;
     bool ok = fill(server, scene->scene, p, given, snapshot, err);
     if (ok && !render_loop_snapshot(server->loop, snapshot))
-        ok = error_set(err, ERROR_TRY_AGAIN, NULL, "%d pictures are waiting to be rendered; try again later", RENDER_LOOP_SNAPSHOTS);
+        ok = error_set(err, ERROR_TRY_AGAIN, NULL, "%d pictures are waiting to be rendered; try again later",
+                       RENDER_LOOP_SNAPSHOTS);
     if (ok) {
         call->snapshot = snapshot;
         atomic_fetch_add(&server->metrics.snapshots, 1);
@@ -127,8 +145,8 @@ static enum outcome start(struct server *server, struct call *call, struct scene
     return OUTCOME_FAILED;
 }
 
-static enum outcome render_snapshot(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                                    struct error *err)
+static enum outcome render_snapshot(struct server *server, struct call *call, const void *params, struct given given,
+                                    json_t **result, struct error *err)
 {
     const struct snapshot_params *p = params;
     struct scene_entry *scene;
@@ -141,4 +159,5 @@ static enum outcome render_snapshot(struct server *server, struct call *call, co
     return outcome;
 }
 
-const struct method method_render_snapshot = {"render.snapshot", snapshot_members, sizeof(struct snapshot_params), false, render_snapshot};
+const struct method method_render_snapshot = {"render.snapshot", snapshot_members, sizeof(struct snapshot_params), false,
+                                              render_snapshot};

@@ -10,7 +10,7 @@
 #include "wire.h"
 
 #define STREAM_QUALITY_DEFAULT 75
-#define ALGORITHM_TEXT_MAX 400
+#define ALGORITHM_TEXT_MAX     400
 
 static const char *const stream_codecs[] = {[GNMF_JPEG] = "jpeg", [GNMF_PNG] = "png", NULL};
 
@@ -28,20 +28,43 @@ struct view_params {
 };
 
 /* The first member of both tables names the view or the scene; the rest they share. */
-enum { FIRST, SIZE, DPR, CAMERA, LIGHTS, ALGORITHM, SHOW, CODEC, QUALITY, FPS, PAUSE, EXPOSURE, AMBIENT, TONEMAP, AA, INPUT_SEQ, INPUT_TIME };
+enum {
+    FIRST,
+    SIZE,
+    DPR,
+    CAMERA,
+    LIGHTS,
+    ALGORITHM,
+    SHOW,
+    CODEC,
+    QUALITY,
+    FPS,
+    PAUSE,
+    EXPOSURE,
+    AMBIENT,
+    TONEMAP,
+    AA,
+    INPUT_SEQ,
+    INPUT_TIME
+};
 
 #define AT(field) offsetof(struct view_params, field)
-#define VIEW_MEMBERS                                                                                                                   \
-    [SIZE] = {"size", MEMBER_NUMBERS, AT(size), 1, SERVER_STREAM_SIDE_MAX, .count = 2},                                                \
-    [DPR] = {"dpr", MEMBER_NUMBER, AT(dpr), 0.1, 8}, [CAMERA] = {"camera", MEMBER_ANY, AT(camera)},                                    \
-    [LIGHTS] = {"lights", MEMBER_ANY, AT(lights)}, [ALGORITHM] = {"algorithm", MEMBER_STRING, AT(algorithm), .max = ALGORITHM_TEXT_MAX}, \
-    [SHOW] = {"show", MEMBER_CHOICE, AT(show), .choices = show_names},                                                                 \
-    [CODEC] = {"codec", MEMBER_CHOICE, AT(codec), .choices = stream_codecs}, [QUALITY] = {"quality", MEMBER_INTEGER, AT(quality), 1, 100}, \
-    [FPS] = {"fps", MEMBER_NUMBER, AT(fps), 0, 1000}, [PAUSE] = {"pause", MEMBER_BOOL, AT(pause)},                                     \
-    [EXPOSURE] = {"exposure", MEMBER_ANY, AT(exposure)}, [AMBIENT] = {"ambient", MEMBER_NUMBER, AT(ambient), 0, 1e6},                  \
-    [TONEMAP] = {"tonemap", MEMBER_CHOICE, AT(tonemap), .choices = tonemap_names}, [AA] = {"aa", MEMBER_INTEGER, AT(aa), 1, 16},       \
-    [INPUT_SEQ] = {"input_seq", MEMBER_INTEGER, AT(input_seq), 0, UINT32_MAX},                                                         \
-    [INPUT_TIME] = {"input_time_us", MEMBER_INTEGER, AT(input_time_us), 0, MEMBER_INTEGER_MAX}, { 0 }
+#define VIEW_MEMBERS                                                                                                             \
+    [SIZE] = {"size", MEMBER_NUMBERS, AT(size), 1, SERVER_STREAM_SIDE_MAX, .count = 2},                                          \
+    [DPR] = {"dpr", MEMBER_NUMBER, AT(dpr), 0.1, 8}, [CAMERA] = {"camera", MEMBER_ANY, AT(camera)},                              \
+    [LIGHTS] = {"lights", MEMBER_ANY, AT(lights)},                                                                               \
+    [ALGORITHM] = {"algorithm", MEMBER_STRING, AT(algorithm), .max = ALGORITHM_TEXT_MAX},                                        \
+    [SHOW] = {"show", MEMBER_CHOICE, AT(show), .choices = show_names},                                                           \
+    [CODEC] = {"codec", MEMBER_CHOICE, AT(codec), .choices = stream_codecs},                                                     \
+    [QUALITY] = {"quality", MEMBER_INTEGER, AT(quality), 1, 100}, [FPS] = {"fps", MEMBER_NUMBER, AT(fps), 0, 1000},              \
+    [PAUSE] = {"pause", MEMBER_BOOL, AT(pause)}, [EXPOSURE] = {"exposure", MEMBER_ANY, AT(exposure)},                            \
+    [AMBIENT] = {"ambient", MEMBER_NUMBER, AT(ambient), 0, 1e6},                                                                 \
+    [TONEMAP] = {"tonemap", MEMBER_CHOICE, AT(tonemap), .choices = tonemap_names}, [AA] = {"aa", MEMBER_INTEGER, AT(aa), 1, 16}, \
+    [INPUT_SEQ] = {"input_seq", MEMBER_INTEGER, AT(input_seq), 0, UINT32_MAX},                                                   \
+    [INPUT_TIME] = {"input_time_us", MEMBER_INTEGER, AT(input_time_us), 0, MEMBER_INTEGER_MAX},                                  \
+    {                                                                                                                            \
+        0                                                                                                                        \
+    }
 
 static const struct member open_members[] = {
     [FIRST] = {"scene", MEMBER_STRING, AT(scene), .max = SCENE_NAME_MAX - 1},
@@ -58,8 +81,9 @@ static bool apply_size(struct view_record *view, struct error *err)
     double width = round(view->size[0] * view->dpr), height = round(view->size[1] * view->dpr);
     if (!(width >= 1 && height >= 1 && width <= SERVER_STREAM_SIDE_MAX && height <= SERVER_STREAM_SIDE_MAX &&
           width * height <= SERVER_STREAM_PIXELS_MAX))
-        return error_set(err, ERROR_USAGE, "size", "size: %g x %g pixels with dpr; 1 to %d a side and at most %u together are accepted", width,
-                         height, SERVER_STREAM_SIDE_MAX, SERVER_STREAM_PIXELS_MAX);
+        return error_set(err, ERROR_USAGE, "size",
+                         "size: %g x %g pixels with dpr; 1 to %d a side and at most %u together are accepted", width, height,
+                         SERVER_STREAM_SIDE_MAX, SERVER_STREAM_PIXELS_MAX);
     view->state.settings.width = (uint32_t)width;
     view->state.settings.height = (uint32_t)height;
     return true;
@@ -105,7 +129,8 @@ static bool apply(struct view_record *view, const struct view_params *p, struct 
     if (is_given(given, CAMERA) && !wire_read_camera(p->camera, &view->camera, view->camera_name, err))
         return false;
     return apply_size(view, err) && apply_picture(view, p, given, err) &&
-           camera_choose(view->scene->scene, &view->camera, (double)state->settings.width / state->settings.height, &state->settings.camera, err);
+           camera_choose(view->scene->scene, &view->camera, (double)state->settings.width / state->settings.height,
+                         &state->settings.camera, err);
 }
 
 void view_publish(struct server *server, struct view_record *view, uint64_t input_seq, uint64_t input_time_us)
@@ -139,18 +164,21 @@ static json_t *describe_view(const struct view_record *view)
     const struct render_settings *settings = &view->state.settings;
     char algorithm[512];
     shadow_format(settings->system, &settings->params, algorithm, sizeof algorithm);
-    return json_pack("{s:I, s:s, s:[i,i], s:o, s:s, s:s, s:s, s:i, s:o, s:b}", "view", (json_int_t)view->id, "scene", view->scene->name, "size",
-                     (int)settings->width, (int)settings->height, "camera", wire_camera(view->scene->scene, &settings->camera), "algorithm",
-                     algorithm, "show", show_names[settings->show], "codec", stream_codecs[view->state.codec], "quality", view->state.quality,
+    return json_pack("{s:I, s:s, s:[i,i], s:o, s:s, s:s, s:s, s:i, s:o, s:b}", "view", (json_int_t)view->id, "scene",
+                     view->scene->name, "size", (int)settings->width, (int)settings->height, "camera",
+                     wire_camera(view->scene->scene, &settings->camera), "algorithm", algorithm, "show",
+                     show_names[settings->show], "codec", stream_codecs[view->state.codec], "quality", view->state.quality,
                      "lights", wire_lights(view->scene->scene, settings), "pause", view->state.paused);
 }
 
 static bool check_room(const struct server *server, const struct session *session, struct error *err)
 {
     if (session->view_count >= SESSION_VIEWS_MAX)
-        return error_set(err, ERROR_TRY_AGAIN, "view", "this session has %u views open; %d are accepted", session->view_count, SESSION_VIEWS_MAX);
+        return error_set(err, ERROR_TRY_AGAIN, "view", "this session has %u views open; %d are accepted", session->view_count,
+                         SESSION_VIEWS_MAX);
     if (server->sessions.view_count >= RENDER_LOOP_VIEWS)
-        return error_set(err, ERROR_TRY_AGAIN, "view", "this server has %d views open already; try again later", RENDER_LOOP_VIEWS);
+        return error_set(err, ERROR_TRY_AGAIN, "view", "this server has %d views open already; try again later",
+                         RENDER_LOOP_VIEWS);
     return true;
 }
 
@@ -247,7 +275,8 @@ static enum outcome ack_frame(struct server *server, struct call *call, const vo
         return OUTCOME_NO_VIEW;
     if (render_loop_ack(server->loop, (uint32_t)p->view, p->frame))
         return OUTCOME_DONE;
-    error_set(err, ERROR_USAGE, "frame", "frame: no such frame has been sent; the number in a received frame's header is accepted");
+    error_set(err, ERROR_USAGE, "frame",
+              "frame: no such frame has been sent; the number in a received frame's header is accepted");
     return OUTCOME_FAILED;
 }
 

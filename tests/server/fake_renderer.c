@@ -85,12 +85,14 @@ void render_scene_destroy(struct render_scene *s)
 
 struct render_settings render_settings_default(const struct scene *scene)
 {
-    struct render_settings s = {.width = 64, .height = 48, .camera = scene_default_camera(scene, 4.0 / 3), .system = shadow_systems[0], .aa = 1};
+    struct render_settings s = {
+        .width = 64, .height = 48, .camera = scene_default_camera(scene, 4.0 / 3), .system = shadow_systems[0], .aa = 1};
     s.params = shadow_defaults(s.system);
     return s;
 }
 
-bool renderer_submit(struct renderer *r, struct render_scene *s, const struct render_settings *settings, uint64_t token, struct error *err)
+bool renderer_submit(struct renderer *r, struct render_scene *s, const struct render_settings *settings, uint64_t token,
+                     struct error *err)
 {
     check_thread(r);
     assert(s && r->count < RENDERER_IN_FLIGHT);

@@ -62,8 +62,9 @@ static void test_hosts(void **state)
     struct access local = {.listen_host = "127.0.0.1", .loopback = true};
     struct access network = {.listen_host = "0.0.0.0", .origins = origins, .origin_count = 1};
     static const char *const good[] = {"127.0.0.1", "127.0.0.1:8080", "localhost", "LOCALHOST:1", "[::1]", "[::1]:80"};
-    static const char *const foreign[] = {"evil.example", "evil.example:8080", "127.0.0.1.evil.example", "localhost.evil", "", ":80",
-                                          "[::1", "[::1]x", "localhost:8o", "localhost/@evil"};
+    static const char *const foreign[] = {
+        "evil.example", "evil.example:8080", "127.0.0.1.evil.example", "localhost.evil", "", ":80", "[::1",
+        "[::1]x",       "localhost:8o",      "localhost/@evil"};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
         assert_true(access_host_ok(&local, good[i]));
     for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; i++) {

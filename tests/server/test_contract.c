@@ -25,9 +25,8 @@ static const json_t *named(const json_t *array, const char *name)
 {
     size_t index;
     json_t *item;
-    json_array_foreach((json_t *)array, index, item)
-        if (strcmp(json_string_value(json_object_get(item, "name")), name) == 0)
-            return item;
+    json_array_foreach((json_t *)array, index,
+                       item) if (strcmp(json_string_value(json_object_get(item, "name")), name) == 0) return item;
     return NULL;
 }
 
@@ -89,7 +88,8 @@ static void test_examples(void **state)
     (void)state;
     json_t *document = load(), *method;
     size_t index;
-    json_array_foreach(json_object_get(document, "methods"), index, method) {
+    json_array_foreach(json_object_get(document, "methods"), index, method)
+    {
         const struct method *m = method_find(json_string_value(json_object_get(method, "name")));
         assert_non_null(m);
         json_t *example, *param, *object = json_object();
@@ -131,6 +131,7 @@ static void test_errors(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods), cmocka_unit_test(test_examples), cmocka_unit_test(test_errors)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods), cmocka_unit_test(test_examples),
+                                       cmocka_unit_test(test_errors)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,7 +36,9 @@ static void test_reads_all(void **state)
     struct all all = {0};
     struct given given;
     struct error err = {0};
-    json_t *json = json_loads("{\"flag\":true,\"whole\":7.0,\"number\":-0.5,\"pair\":[1,2.5],\"text\":\"abcd\",\"choice\":\"green\",\"any\":[]}", 0, NULL);
+    json_t *json = json_loads(
+        "{\"flag\":true,\"whole\":7.0,\"number\":-0.5,\"pair\":[1,2.5],\"text\":\"abcd\",\"choice\":\"green\",\"any\":[]}", 0,
+        NULL);
     assert_true(members_read(json, "", table, &all, &given, &err));
     assert_int_equal(given.bits, 0x7f);
     assert_true(all.flag);

@@ -14,7 +14,7 @@
 #include "scene_store.h"
 
 #define PATIENCE_MS 20000
-#define QUIET_MS 60 /* long enough for a frame that must not come */
+#define QUIET_MS    60 /* long enough for a frame that must not come */
 
 struct fixture {
     struct job_pool *pool;
@@ -82,7 +82,8 @@ static int tear_down(void **state)
 
 static struct view_state state_of(struct fixture *f, uint32_t seq)
 {
-    struct view_state s = {.settings = render_settings_default(f->scene.scene), .quality = 75, .input_seq = seq, .input_time_us = seq * 1000ull};
+    struct view_state s = {
+        .settings = render_settings_default(f->scene.scene), .quality = 75, .input_seq = seq, .input_time_us = seq * 1000ull};
     s.settings.camera.eye.x = seq;
     return s;
 }
@@ -311,7 +312,8 @@ static void test_no_device(void **state)
     struct metrics metrics = {0};
     struct fixture context = {0};
     struct encode_pool *encoders = encode_pool_create(1, on_done, &context, &err);
-    struct render_loop_options options = {.renderer = {.device = "none", .threads = 1}, .encoders = encoders, .metrics = &metrics};
+    struct render_loop_options options = {
+        .renderer = {.device = "none", .threads = 1}, .encoders = encoders, .metrics = &metrics};
     assert_null(render_loop_create(&options, &err));
     assert_int_equal(err.code, ERROR_NO_DEVICE);
     encode_pool_destroy(encoders);

@@ -18,7 +18,7 @@
 #include "server.h"
 
 #define CLIENTS 4
-#define ROUNDS 25
+#define ROUNDS  25
 
 struct fixture {
     struct job_pool *pool;
@@ -64,7 +64,8 @@ static int tear_down(void **state)
 
 static int dial(const struct fixture *f)
 {
-    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)net_port(f->server.net)), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    struct sockaddr_in address = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)net_port(f->server.net)), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     struct timeval patience = {.tv_sec = 30};
     int s = socket(AF_INET, SOCK_STREAM, 0);
     assert_int_equal(connect(s, (struct sockaddr *)&address, sizeof address), 0);
@@ -78,8 +79,9 @@ static void get(int s, void *data, size_t size) { assert_int_equal(recv(s, data,
 
 static int ws_open(const struct fixture *f)
 {
-    static const char request[] = "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-                                  "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " SERVER_SUBPROTOCOL "\r\n\r\n";
+    static const char request[] =
+        "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " SERVER_SUBPROTOCOL "\r\n\r\n";
     char answer[2048] = "";
     int s = dial(f);
     put(s, request, sizeof request - 1);
@@ -178,9 +180,10 @@ static void *stream_client(void *argument)
     unsigned view = ws_open_view(s);
     for (unsigned i = 2; i < ROUNDS; i++) {
         char text[256];
-        snprintf(text, sizeof text,
-                 "{\"jsonrpc\":\"2.0\",\"method\":\"view.set\",\"params\":{\"view\":%u,\"input_seq\":%u,\"camera\":{\"eye\":[%u,3,5],\"target\":[0,0,0]}}}", view,
-                 i, i);
+        snprintf(
+            text, sizeof text,
+            "{\"jsonrpc\":\"2.0\",\"method\":\"view.set\",\"params\":{\"view\":%u,\"input_seq\":%u,\"camera\":{\"eye\":[%u,3,5],\"target\":[0,0,0]}}}",
+            view, i, i);
         ws_put(s, text);
         while (ws_get_frame(s, view) < i)
             ;
@@ -193,7 +196,9 @@ static void post(const struct fixture *f, const char *body, const char *wanted)
 {
     char request[1024], answer[65536] = "";
     int s = dial(f);
-    snprintf(request, sizeof request, "POST /v1/render HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: %zu\r\n\r\n%s", strlen(body), body);
+    snprintf(request, sizeof request,
+             "POST /v1/render HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: %zu\r\n\r\n%s", strlen(body),
+             body);
     put(s, request, strlen(request));
     assert_true(recv(s, answer, sizeof answer - 1, 0) > 12);
     assert_memory_equal(answer, wanted, strlen(wanted));
@@ -216,7 +221,8 @@ static void *rude_client(void *argument)
         int s = ws_open(argument);
         unsigned view = ws_open_view(s);
         char text[128];
-        snprintf(text, sizeof text, "{\"jsonrpc\":\"2.0\",\"method\":\"view.set\",\"params\":{\"view\":%u,\"quality\":%d}}", view, i + 1);
+        snprintf(text, sizeof text, "{\"jsonrpc\":\"2.0\",\"method\":\"view.set\",\"params\":{\"view\":%u,\"quality\":%d}}", view,
+                 i + 1);
         ws_put(s, text);
         close(s);
     }
