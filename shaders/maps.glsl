@@ -33,8 +33,7 @@ MapPoint map_point(vec3 point)
 /* How far before the stored depth a point counts as lit: constant + slope x texel x tan(angle of incidence). */
 float map_bias(Receiver r, MapPoint m, float constant_bias, float slope)
 {
-    float tangent = sqrt(max(1.0 - r.cosine * r.cosine, 0.0)) / r.cosine;
-    return constant_bias + slope * m.texel_size * tangent;
+    return constant_bias + slope * m.texel_size * r.tangent;
 }
 
 /* 1 if a point at `depth` is no farther than what texel `at` holds. Without a division: depth <= near / stored. */

@@ -1,13 +1,16 @@
 /* struct pixel of renderer/scene/pixel.h: x geometric normal, y depth, z shading normal and metallic, w colour and roughness. */
 #include "blocks.h"
 
-vec3 octahedral_unfold(vec2 e)
+/* Of the right direction, of any length in [0.57, 1]. */
+vec3 octahedral_raw(vec2 e)
 {
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
     float t = max(-n.z, 0.0);
     n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
-    return normalize(n);
+    return n;
 }
+
+vec3 octahedral_unfold(vec2 e) { return normalize(octahedral_raw(e)); }
 
 vec2 octahedral_fold(vec3 n)
 {

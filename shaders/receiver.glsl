@@ -3,12 +3,14 @@
 
 layout(binding = UNIT_PIXELS) uniform usampler2D pixels;
 
+/* What a system does not use costs nothing: compilers drop it. */
 struct Receiver {
     vec3 point;     /* relative */
     vec3 normal;    /* unit, geometric, turned to the eye */
     vec3 to_light;  /* unit */
-    float cosine;   /* normal . to_light, > 0 for a receiver */
     float distance; /* to the light; 0 for a directional one */
+    float cosine;   /* of the angle of incidence, > 0 for a receiver */
+    float tangent;  /* of the same */
 };
 
 /* False: no surface, or it faces away from the light, or lies outside its cone or range; visibility is 0 there. */
@@ -19,20 +21,20 @@ bool receiver_at(ivec2 pixel, out Receiver r)
     vec3 origin, direction;
     pixel_ray(pixel, origin, direction);
     r.point = origin + depth * direction;
-    r.normal = pixel_geometric(p);
-    bool inside = depth > 0.0;
-    if (LIGHT == LIGHT_KIND_DIRECTIONAL) {
-        r.to_light = -light_direction.xyz;
-        r.distance = 0.0;
-    } else {
-        vec3 v = light_position.xyz - r.point;
-        float d2 = dot(v, v), inverse = inversesqrt(max(d2, 1e-37));
-        r.distance = d2 * inverse;
-        r.to_light = v * inverse;
-        inside = inside && (light_direction.w == 0.0 || r.distance <= light_direction.w);
-        if (LIGHT == LIGHT_KIND_SPOT)
-            inside = inside && -dot(r.to_light, light_direction.xyz) >= light_cone.x;
-    }
-    r.cosine = dot(r.normal, r.to_light);
-    return inside && r.cosine > 0.0;
+    bool parallel = LIGHT == LIGHT_KIND_DIRECTIONAL;
+    vec3 v = parallel ? -light_direction.xyz : light_position.xyz - r.point;
+    vec3 n = octahedral_raw(unpackSnorm2x16(p.x));
+    /* One square root for both lengths. */
+    float d2 = dot(v, v), n_v = dot(n, v), lengths2 = dot(n, n) * d2;
+    r.normal = normalize(n);
+    r.to_light = normalize(v);
+    r.distance = parallel ? 0.0 : sqrt(d2);
+    r.cosine = n_v * inversesqrt(lengths2);
+    r.tangent = sqrt(max(lengths2 / (n_v * n_v) - 1.0, 0.0));
+    bool inside = depth > 0.0 && n_v > 0.0;
+    if (!parallel)
+        inside = inside && (light_direction.w == 0.0 || d2 <= light_direction.w * light_direction.w);
+    if (LIGHT == LIGHT_KIND_SPOT)
+        inside = inside && -dot(v, light_direction.xyz) >= light_cone.x * sqrt(d2);
+    return inside;
 }

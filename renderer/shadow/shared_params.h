@@ -19,9 +19,9 @@ enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT };
  * paper models at size 1024 (docs/bias.md). */
 #define SHADOW_BIAS_PARAMS                                                                                             \
     {.name = "bias", .unit = "scene units", .help = "Depth by which a point may lie behind the stored surface and still be lit.",   \
-     .kind = PARAM_FLOAT, .min = 0, .max = 1e6, .initial = 0},                                                         \
+     .kind = PARAM_FLOAT, .min = 0, .max = 1e6, .initial = 0.00075},                                                         \
     {.name = "slope", .unit = "", .help = "More of it: times a texel's size times the tangent of the angle of incidence.",          \
-     .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = 1}
+     .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = 0.5}
 
 struct light_maps;
 
