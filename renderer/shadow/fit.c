@@ -7,6 +7,9 @@
 #define HALF_ANGLE_MAX (M_PI / 3)
 /* Room around a fit, so that a vertex on the border is inside after rounding: a fraction of the extent. */
 #define MARGIN 1e-4
+/* The same along a directional light, at least: a fraction of the scene's radius. Casters in one plane across the light have no extent there, and
+ * depths of single precision over less than their own rounding are all cut off. */
+#define DEPTH_ROOM 1e-5
 /* Nearest depth of a map against its farthest, when casters come arbitrarily near the light. */
 #define NEAR_RATIO 1e-6
 
@@ -141,7 +144,7 @@ static void fit_directional(const struct fit_geometry *g, const struct light *li
         e.min_x = e.min_y = -r;
         e.max_x = e.max_y = r;
     }
-    double mz = MARGIN * (e.max_z - e.min_z) + 1e-9 * fmax(fabs(e.min_z), fabs(e.max_z)) + 1e-12;
+    double mz = MARGIN * (e.max_z - e.min_z) + DEPTH_ROOM * dbox_radius(&g->scene->bounds) + 1e-12;
     set_picture(v, &e);
     v->near = e.min_z - mz;
     v->far = e.max_z + mz;
