@@ -36,10 +36,12 @@ static bool unknown_param(const struct shadow_system *system, const char *key, s
         append(list, sizeof list, i ? ", " : "");
         append(list, sizeof list, system->params[i].name);
     }
-    return error_set(err, ERROR_USAGE, key, "%s has no parameter '%s': it takes %s", system->name, key, list[0] ? list : "none");
+    return error_set(err, ERROR_USAGE, key[0] ? key : "algorithm", "%s has no parameter '%s': it takes %s", system->name, key,
+                     list[0] ? list : "none");
 }
 
-static bool parse_choice(const struct shadow_system *system, const struct param_desc *p, const char *value, double *out, struct error *err)
+static bool parse_choice(const struct shadow_system *system, const struct param_desc *p, const char *value, double *out,
+                         struct error *err)
 {
     char list[160] = "";
     for (int i = 0; p->choices[i]; i++) {
@@ -53,16 +55,20 @@ static bool parse_choice(const struct shadow_system *system, const struct param_
     return error_set(err, ERROR_USAGE, p->name, "%s: %s=%s is none of its choices: %s", system->name, p->name, value, list);
 }
 
-static bool parse_number(const struct shadow_system *system, const struct param_desc *p, const char *value, double *out, struct error *err)
+static bool parse_number(const struct shadow_system *system, const struct param_desc *p, const char *value, double *out,
+                         struct error *err)
 {
     char *end;
     double number = strtod(value, &end);
+    bool decimal = strspn(value, "0123456789+-.eE") == strlen(value);
     bool whole = p->kind != PARAM_INT || number == floor(number);
     bool odd = !p->odd || fmod(number, 2) == 1;
-    if (end == value || *end || !isfinite(number) || number < p->min || number > p->max || !whole || !odd)
+    if (end == value || *end || !decimal || !isfinite(number) || number < p->min || number > p->max || !whole || !odd)
         return error_set(err, ERROR_USAGE, p->name, "%s: %s=%s is not %s %.9g to %.9g%s%s", system->name, p->name, value,
-                         p->odd ? "an odd number from" : p->kind == PARAM_INT ? "a whole number from" : "a number from", p->min, p->max,
-                         p->unit[0] ? " " : "", p->unit);
+                         p->odd                 ? "an odd number from"
+                         : p->kind == PARAM_INT ? "a whole number from"
+                                                : "a number from",
+                         p->min, p->max, p->unit[0] ? " " : "", p->unit);
     *out = number;
     return true;
 }
