@@ -58,12 +58,18 @@ static bool in_range(const struct dbox *box, const struct light *l)
     return l->range == 0 || dvec3_length(dvec3_sub(dbox_center(box), l->position)) <= l->range + dbox_radius(box);
 }
 
-static size_t find_casters(const struct scene *scene, const struct light *light, uint32_t *out)
+/* Bounds may hold vertices of triangles that are not finite; the boxes hold none. */
+static bool has_boxes(const struct fit_geometry *g, const struct instance *instance)
+{
+    return g->first_box[instance->mesh] < g->first_box[instance->mesh + 1];
+}
+
+static size_t find_casters(const struct fit_geometry *g, const struct light *light, uint32_t *out)
 {
     size_t n = 0;
-    for (uint32_t i = 0; i < scene->instance_count; i++) {
-        const struct instance *instance = &scene->instances[i];
-        if (!casts(instance, light))
+    for (uint32_t i = 0; i < g->scene->instance_count; i++) {
+        const struct instance *instance = &g->scene->instances[i];
+        if (!has_boxes(g, instance) || !casts(instance, light))
             continue;
         if (light->kind != LIGHT_DIRECTIONAL && !in_range(&instance->bounds, light))
             continue;
@@ -299,7 +305,7 @@ void shadow_fit_compute(const struct fit_geometry *g, const struct light *light,
     for (int i = 0; i < SHADOW_MAPS_MAX; i++)
         out->maps[i].width = out->maps[i].height = size;
     out->casters = casters;
-    out->caster_count = find_casters(g->scene, light, casters);
+    out->caster_count = find_casters(g, light, casters);
     if (out->caster_count == 0)
         return;
     if (light->kind == LIGHT_DIRECTIONAL)
