@@ -33,13 +33,65 @@ export interface SceneName {
   name: string;
   source: "builtin" | "file";
   help?: string;
+  params?: Omit<Param, "unit">[];
+}
+
+export type LightKind = "directional" | "point" | "spot";
+
+export interface Light {
+  kind: LightKind;
+  name?: string | null;
+  position?: Vec3; // point, spot
+  direction?: Vec3; // the way the light travels; directional, spot
+  color?: Vec3; // linear
+  intensity?: number; // candela; lux for a directional light
+  radius?: number;
+  inner?: number; // degrees, half angles; spot
+  outer?: number;
+  range?: number; // 0: no limit
+}
+
+export interface SceneCamera {
+  name: string | null;
+  kind: "perspective" | "orthographic";
+}
+
+export interface SceneInfo {
+  scene: string;
+  triangles: number;
+  drawn_triangles: number;
+  vertices: number;
+  bounds: { min: Vec3; max: Vec3 } | null;
+  cameras: SceneCamera[];
+  lights: Light[];
+}
+
+export interface LightsResult {
+  index: number;
+  lights: Light[];
+}
+
+export interface SnapshotSettings {
+  scene?: string;
+  size?: [number, number];
+  camera?: LookAt | string | number;
+  lights?: Light[];
+  algorithm?: string;
+  show?: string;
+  format?: string;
+  quality?: number;
+  exposure?: number | "auto";
+  ambient?: number;
+  tonemap?: string;
+  aa?: number;
+  request_id?: number;
 }
 
 export interface Hello {
   version: string;
   session: string;
   role: "view" | "control";
-  capabilities: { show: string[]; codecs: string[]; device: string };
+  capabilities: { show: string[]; codecs: string[]; formats: string[]; methods: string[]; device: string };
   limits: Record<string, number>;
   scenes: SceneName[];
   algorithms: Algorithm[];
@@ -52,6 +104,14 @@ export interface ViewInfo {
   camera: Required<LookAt>;
   algorithm: string;
   show: string;
+  codec: string;
+  quality: number;
+  lights: Light[];
+  pause: boolean;
+  exposure?: number | "auto";
+  ambient?: number;
+  tonemap?: string;
+  aa?: number;
 }
 
 export interface ViewStats {
@@ -73,7 +133,13 @@ export interface ViewSettings {
   camera?: LookAt | string | number;
   algorithm?: string;
   show?: string;
+  lights?: Light[];
+  codec?: string;
   quality?: number;
   pause?: boolean;
   fps?: number;
+  exposure?: number | "auto";
+  ambient?: number;
+  tonemap?: string;
+  aa?: number;
 }
