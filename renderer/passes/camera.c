@@ -20,7 +20,7 @@ bool camera_rasterize(struct gbuffer *g, struct draw_scene *scene, struct error 
         return false;
     g->traced = g->pixels_done = false;
     g->ids_uploaded = true;
-    if (!tiles_set_all(&g->tiles, scene->gl, err))
+    if (!tiles_set_all(&g->tiles, scene->gl, height, err))
         return false;
     gl_target_attach(&g->target, &g->ids, &g->depth, 0);
     gl_target_bind(&g->target, width, height);
@@ -52,10 +52,12 @@ bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct trac
     g->ids_uploaded = false;
     g->pixels_done = scene->plain;
     tracer_camera(tracer, &g->view.view, pool, g->cpu_ids, scene->plain ? g->cpu_pixels : NULL);
-    if (scene->plain)
-        glTextureSubImage2D(g->pixels.id, 0, 0, 0, (GLsizei)g->ids.width, (GLsizei)g->ids.height, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                            g->cpu_pixels);
-    return tiles_set_occupied(&g->tiles, scene->gl, g->cpu_ids, g->ids.width, g->ids.height, pool, err);
+    if (!tiles_set_occupied(&g->tiles, scene->gl, g->cpu_ids, g->ids.width, g->ids.height, pool, err))
+        return false;
+    if (scene->plain && g->tiles.count)
+        glTextureSubImage2D(g->pixels.id, 0, 0, (GLint)g->tiles.top, (GLsizei)g->ids.width, (GLsizei)(g->tiles.bottom - g->tiles.top),
+                            GL_RGBA_INTEGER, GL_UNSIGNED_INT, g->cpu_pixels + (size_t)g->tiles.top * g->ids.width);
+    return gl_check(scene->gl, err);
 }
 
 bool camera_surfaces(struct gbuffer *g, struct draw_scene *scene, struct error *err)

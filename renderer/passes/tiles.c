@@ -33,8 +33,10 @@ static bool upload(struct tiles *t, struct gl_context *gl, const struct rectangl
     return gl_check(gl, err);
 }
 
-bool tiles_set_all(struct tiles *t, struct gl_context *gl, struct error *err)
+bool tiles_set_all(struct tiles *t, struct gl_context *gl, uint32_t height, struct error *err)
 {
+    t->top = 0;
+    t->bottom = height;
     static const struct rectangle all = {-1, -1, 1, 1};
     return upload(t, gl, &all, 1, err);
 }
@@ -89,8 +91,14 @@ bool tiles_set_occupied(struct tiles *t, struct gl_context *gl, const uint32_t *
     bool ok = scan.occupied && rectangles;
     if (ok) {
         job_pool_for(pool, rows, scan_row, &scan);
-        for (uint32_t row = 0; row < rows; row++)
-            count += join_row(&scan, row, rectangles + count);
+        t->top = height;
+        t->bottom = 0;
+        for (uint32_t row = 0; row < rows; row++) {
+            uint32_t runs = join_row(&scan, row, rectangles + count), end = (row + 1) * SIDE < height ? (row + 1) * SIDE : height;
+            t->top = runs && t->top == height ? row * SIDE : t->top;
+            t->bottom = runs ? end : t->bottom;
+            count += runs;
+        }
         ok = upload(t, gl, rectangles, count, err);
     } else {
         error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture of %u x %u", width, height);

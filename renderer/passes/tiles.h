@@ -15,10 +15,11 @@ struct tiles {
     struct gl_buffer rectangles; /* a vec4 each: clip-space x0, y0, x1, y1 */
     unsigned vertex_array;
     uint32_t count;
+    uint32_t top, bottom;        /* pixel rows they lie in: [top, bottom) */
 };
 
 /* The whole picture. */
-bool tiles_set_all(struct tiles *t, struct gl_context *gl, struct error *err);
+bool tiles_set_all(struct tiles *t, struct gl_context *gl, uint32_t height, struct error *err);
 
 /* What of `ids` (width * height; SCENE_NONE: background) holds surfaces, in squares of 64 pixels, joined along rows. */
 bool tiles_set_occupied(struct tiles *t, struct gl_context *gl, const uint32_t *ids, uint32_t width, uint32_t height,

@@ -9,6 +9,7 @@ struct camera_job {
     const struct tracer *tracer;
     const struct view *view;
     struct ray_frame frame;
+    struct ray_offsets offsets;
     uint32_t *ids;
     struct pixel *pixels;
 };
@@ -40,10 +41,10 @@ static void camera_tile(void *context, size_t index, unsigned worker)
     struct RTCRayHit16 packet;
     int valid[LANES] __attribute__((aligned(64)));
     float facing[LANES];
-    ray_frame_start(&job->frame, job->view->orthographic, &packet);
+    ray_frame_start(&job->frame, &packet);
     for (uint32_t y = tile.y; y < tile.y + tile.height; y += PACKET)
         for (uint32_t x = tile.x; x < tile.x + tile.width; x += PACKET) {
-            ray_frame_packet(&job->frame, job->view->orthographic, x + 0.5, y + 0.5, &packet);
+            ray_frame_packet(&job->frame, &job->offsets, x, y, &packet);
             tile_lanes(&tile, x, y, valid);
             trace_visible(job->tracer, valid, job->frame.tfar, &packet, facing);
             write_ids(job, valid, &packet.hit, x, y);
@@ -55,6 +56,7 @@ static void camera_tile(void *context, size_t index, unsigned worker)
 void tracer_camera(const struct tracer *t, const struct view *view, struct job_pool *pool, uint32_t *ids, struct pixel *pixels)
 {
     struct camera_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .ids = ids, .pixels = pixels};
+    job.offsets = ray_offsets_pixels(&job.frame);
     job_pool_for(pool, tile_count(view), camera_tile, &job);
 }
 
@@ -63,6 +65,7 @@ struct light_job {
     RTCScene tree;
     const struct view *view;
     struct ray_frame frame;
+    struct ray_offsets offsets;
     float *depths;
     uint32_t *ids;
 };
@@ -91,10 +94,10 @@ static void light_tile(void *context, size_t index, unsigned worker)
     struct RTCIntersectContext query;
     rtcInitIntersectContext(&query);
     query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    ray_frame_start(&job->frame, job->view->orthographic, &packet);
+    ray_frame_start(&job->frame, &packet);
     for (uint32_t y = tile.y; y < tile.y + tile.height; y += PACKET)
         for (uint32_t x = tile.x; x < tile.x + tile.width; x += PACKET) {
-            ray_frame_packet(&job->frame, job->view->orthographic, x + 0.5, y + 0.5, &packet);
+            ray_frame_packet(&job->frame, &job->offsets, x, y, &packet);
             tile_lanes(&tile, x, y, valid);
             rtcIntersect16(valid, job->tree, &query, &packet);
             write_depths(job, valid, &packet, x, y);
@@ -105,6 +108,7 @@ void tracer_light(const struct tracer *t, const struct view *view, const uint32_
                   float *depths, uint32_t *ids)
 {
     struct light_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .depths = depths, .ids = ids};
+    job.offsets = ray_offsets_pixels(&job.frame);
     job.tree = tree_of_casters(t, casters, caster_count);
     if (!job.tree)
         job.tree = t->all;

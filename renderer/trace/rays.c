@@ -1,8 +1,6 @@
 /* Camera rays in packets, and what comes back of them. */
 #include "trace/rays.h"
 
-#include <math.h>
-
 size_t tile_count(const struct view *view)
 {
     return (size_t)((view->width + TILE - 1) / TILE) * ((view->height + TILE - 1) / TILE);
@@ -19,96 +17,92 @@ struct tile tile_at(const struct view *view, size_t index)
 
 struct ray_frame ray_frame_make(const struct view *view)
 {
-    struct ray_frame f = {.tnear = (float)view->near, .tfar = isfinite(view->far) ? (float)view->far : INFINITY};
     double x_step = (view->right_edge - view->left) / view->width, y_step = (view->bottom - view->top) / view->height;
     struct dvec3 corner = dvec3_mad(dvec3_scale(view->right, view->left), view->up, view->top);
-    struct dvec3 across = dvec3_scale(view->right, x_step), down = dvec3_scale(view->up, y_step);
+    struct ray_frame f = {
+        .orthographic = view->orthographic,
+        .shared = view->eye,
+        .varying = dvec3_add(view->forward, corner),
+        .dx = dvec3_scale(view->right, x_step),
+        .dy = dvec3_scale(view->up, y_step),
+        .tnear = (float)view->near,
+        .tfar = (float)view->far,
+    };
     if (view->orthographic) {
         /* Embree wants tnear >= 0: start at the near plane. */
         f.start = view->near;
         f.tnear = 0;
         f.tfar = (float)(view->far - view->near);
-        f.origin = dvec3_add(dvec3_mad(view->eye, view->forward, view->near), corner);
-        f.origin_x = across;
-        f.origin_y = down;
-        f.direction = view->forward;
-    } else {
-        f.origin = view->eye;
-        f.direction = dvec3_add(view->forward, corner);
-        f.direction_x = across;
-        f.direction_y = down;
+        f.shared = view->forward;
+        f.varying = dvec3_add(dvec3_mad(view->eye, view->forward, view->near), corner);
     }
     return f;
 }
 
-/* out = base + x * dx + y * dy over the packet's lanes, rounded once per lane. */
-static void fill(float *restrict out, double base, double dx, double dy)
+struct ray_offsets ray_offsets_make(const struct ray_frame *f, const float (*positions)[2])
 {
-    for (int y = 0; y < PACKET; y++)
-        for (int x = 0; x < PACKET; x++)
-            out[y * PACKET + x] = (float)(base + x * dx + y * dy);
-}
-
-static void fill_vector(float *x, float *y, float *z, struct dvec3 base, struct dvec3 dx, struct dvec3 dy, double px, double py)
-{
-    struct dvec3 at = dvec3_mad(dvec3_mad(base, dx, px), dy, py);
-    fill(x, at.x, dx.x, dy.x);
-    fill(y, at.y, dx.y, dy.y);
-    fill(z, at.z, dx.z, dy.z);
-}
-
-void ray_frame_start(const struct ray_frame *f, bool orthographic, struct RTCRayHit16 *packet)
-{
+    struct ray_offsets o;
     for (int i = 0; i < LANES; i++) {
-        packet->ray.tnear[i] = f->tnear;
-        packet->ray.time[i] = 0;
-        packet->ray.mask[i] = ~0u;
-        packet->ray.id[i] = 0;
-        packet->ray.flags[i] = 0;
+        double x = (double)positions[i][0], y = (double)positions[i][1];
+        o.x[i] = f->dx.x * x + f->dy.x * y;
+        o.y[i] = f->dx.y * x + f->dy.y * y;
+        o.z[i] = f->dx.z * x + f->dy.z * y;
+    }
+    return o;
+}
+
+struct ray_offsets ray_offsets_pixels(const struct ray_frame *f)
+{
+    float positions[LANES][2];
+    for (int i = 0; i < LANES; i++) {
+        positions[i][0] = (float)(i % PACKET) + 0.5f;
+        positions[i][1] = (float)(i / PACKET) + 0.5f;
+    }
+    return ray_offsets_make(f, (const float(*)[2])positions);
+}
+
+static void fill(float *restrict out, double base, const double *restrict offsets)
+{
+    for (int i = 0; i < LANES; i++)
+        out[i] = (float)(base + offsets[i]);
+}
+
+void ray_frame_start(const struct ray_frame *f, struct RTCRayHit16 *packet)
+{
+    static const double none[LANES];
+    struct RTCRay16 *r = &packet->ray;
+    for (int i = 0; i < LANES; i++) {
+        r->tnear[i] = f->tnear;
+        r->time[i] = 0;
+        r->mask[i] = ~0u;
+        r->id[i] = 0;
+        r->flags[i] = 0;
         packet->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    struct RTCRay16 *r = &packet->ray;
-    struct dvec3 zero = {0, 0, 0};
-    fill_vector(r->org_x, r->org_y, r->org_z, f->origin, zero, zero, 0, 0);
-    if (orthographic)
-        fill_vector(r->dir_x, r->dir_y, r->dir_z, f->direction, zero, zero, 0, 0);
+    fill(f->orthographic ? r->dir_x : r->org_x, f->shared.x, none);
+    fill(f->orthographic ? r->dir_y : r->org_y, f->shared.y, none);
+    fill(f->orthographic ? r->dir_z : r->org_z, f->shared.z, none);
 }
 
-void ray_frame_packet(const struct ray_frame *f, bool orthographic, double x, double y, struct RTCRayHit16 *packet)
+void ray_frame_packet(const struct ray_frame *f, const struct ray_offsets *offsets, double x, double y, struct RTCRayHit16 *packet)
 {
     struct RTCRay16 *r = &packet->ray;
-    if (orthographic)
-        fill_vector(r->org_x, r->org_y, r->org_z, f->origin, f->origin_x, f->origin_y, x, y);
-    else
-        fill_vector(r->dir_x, r->dir_y, r->dir_z, f->direction, f->direction_x, f->direction_y, x, y);
+    const struct dvec3 at = dvec3_mad(dvec3_mad(f->varying, f->dx, x), f->dy, y);
+    fill(f->orthographic ? r->org_x : r->dir_x, at.x, offsets->x);
+    fill(f->orthographic ? r->org_y : r->dir_y, at.y, offsets->y);
+    fill(f->orthographic ? r->org_z : r->dir_z, at.z, offsets->z);
     for (int i = 0; i < LANES; i++) {
         r->tfar[i] = f->tfar;
         packet->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
 }
 
-void ray_frame_samples(const struct ray_frame *f, bool orthographic, double x, double y, const float (*samples)[2],
-                       struct RTCRayHit16 *packet)
+bool tile_lanes(const struct tile *tile, uint32_t x, uint32_t y, int valid[LANES])
 {
-    struct RTCRay16 *r = &packet->ray;
-    struct dvec3 base = orthographic ? f->origin : f->direction, dx = orthographic ? f->origin_x : f->direction_x,
-                 dy = orthographic ? f->origin_y : f->direction_y;
-    struct dvec3 corner = dvec3_mad(dvec3_mad(base, dx, x), dy, y);
-    float *out[3] = {orthographic ? r->org_x : r->dir_x, orthographic ? r->org_y : r->dir_y, orthographic ? r->org_z : r->dir_z};
-    const double c[3] = {corner.x, corner.y, corner.z}, h[3] = {dx.x, dx.y, dx.z}, v[3] = {dy.x, dy.y, dy.z};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < LANES; i++)
-            out[k][i] = (float)(c[k] + h[k] * (double)samples[i][0] + v[k] * (double)samples[i][1]);
-    for (int i = 0; i < LANES; i++) {
-        r->tfar[i] = f->tfar;
-        packet->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    }
-}
-
-void tile_lanes(const struct tile *tile, uint32_t x, uint32_t y, int valid[LANES])
-{
+    uint32_t columns = tile->x + tile->width - x, rows = tile->y + tile->height - y;
     for (unsigned i = 0; i < LANES; i++)
-        valid[i] = x + i % PACKET < tile->x + tile->width && y + i / PACKET < tile->y + tile->height ? -1 : 0;
+        valid[i] = i % PACKET < columns && i / PACKET < rows ? -1 : 0;
+    return columns >= PACKET && rows >= PACKET;
 }
 
 void hit_ids(const struct tracer *t, const struct RTCHit16 *hit, uint32_t ids[LANES])

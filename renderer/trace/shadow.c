@@ -81,6 +81,7 @@ struct shadow_job {
     const struct tracer *tracer;
     const struct view *view;
     struct ray_frame frame;
+    struct ray_offsets offsets[2]; /* pixels; or both halves of the samples */
     struct light_frame light;
     const uint32_t *ids;
     float *visibility;
@@ -139,10 +140,10 @@ static void point_tile(void *context, size_t index, unsigned worker)
     const struct shadow_job *job = context;
     const struct tile tile = tile_at(job->view, index);
     struct RTCRayHit16 packet;
-    ray_frame_start(&job->frame, job->view->orthographic, &packet);
+    ray_frame_start(&job->frame, &packet);
     for (uint32_t y = tile.y; y < tile.y + tile.height; y += PACKET)
         for (uint32_t x = tile.x; x < tile.x + tile.width; x += PACKET) {
-            ray_frame_packet(&job->frame, job->view->orthographic, x + 0.5, y + 0.5, &packet);
+            ray_frame_packet(&job->frame, &job->offsets[0], x, y, &packet);
             point_packet(job, &tile, &packet.ray, x, y);
         }
 }
@@ -152,18 +153,19 @@ void tracer_shadow_point(const struct tracer *t, const struct view *view, const 
 {
     struct shadow_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .light = light_frame_make(t->scene, light),
                              .ids = ids, .visibility = visibility};
+    job.offsets[0] = ray_offsets_pixels(&job.frame);
     job_pool_for(pool, tile_count(view), point_tile, &job);
 }
 
 /* Sixteen samples of a pixel: bits of receivers, and of those the lit ones. */
-static uint32_t sample_packet(const struct shadow_job *job, unsigned first, uint32_t x, uint32_t y, struct RTCRayHit16 *packet,
+static uint32_t sample_packet(const struct shadow_job *job, unsigned half, uint32_t x, uint32_t y, struct RTCRayHit16 *packet,
                               uint32_t *lit)
 {
     static const int all[LANES] __attribute__((aligned(64))) = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
     struct shadow_packet s;
     float facing[LANES];
     uint32_t receivers = 0;
-    ray_frame_samples(&job->frame, job->view->orthographic, x, y, &view_samples32[first], packet);
+    ray_frame_packet(&job->frame, &job->offsets[half], x, y, packet);
     trace_visible(job->tracer, all, job->frame.tfar, packet, facing);
     for (int i = 0; i < LANES; i++) {
         const struct RTCRay16 *r = &packet->ray;
@@ -187,11 +189,11 @@ static void sample_tile(void *context, size_t index, unsigned worker)
     const struct shadow_job *job = context;
     const struct tile tile = tile_at(job->view, index);
     struct RTCRayHit16 packet;
-    ray_frame_start(&job->frame, job->view->orthographic, &packet);
+    ray_frame_start(&job->frame, &packet);
     for (uint32_t y = tile.y; y < tile.y + tile.height; y++)
         for (uint32_t x = tile.x; x < tile.x + tile.width; x++) {
             uint32_t lit[2];
-            uint32_t low = sample_packet(job, 0, x, y, &packet, &lit[0]), high = sample_packet(job, LANES, x, y, &packet, &lit[1]);
+            uint32_t low = sample_packet(job, 0, x, y, &packet, &lit[0]), high = sample_packet(job, 1, x, y, &packet, &lit[1]);
             size_t at = (size_t)y * job->view->width + x;
             if (job->receivers)
                 job->receivers[at] = low | high << LANES;
@@ -205,5 +207,7 @@ void tracer_shadow_samples32(const struct tracer *t, const struct view *view, co
 {
     struct shadow_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .light = light_frame_make(t->scene, light),
                              .receivers = receivers, .lit = lit};
+    job.offsets[0] = ray_offsets_make(&job.frame, view_samples32);
+    job.offsets[1] = ray_offsets_make(&job.frame, view_samples32 + LANES);
     job_pool_for(pool, tile_count(view), sample_tile, &job);
 }

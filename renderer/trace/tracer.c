@@ -1,6 +1,6 @@
-/* The tree: one Embree geometry an instance over flattened vertices. Flattening costs 12 bytes a drawn vertex and a tree over every
- * drawn triangle, and spares each ray a transform and a second descent: Embree's own instances traced slower and, their transforms being
- * fp32, less truly. Indices are shared with the scene. */
+/* The tree: one Embree geometry an instance over flattened vertices. Flattening costs 12 bytes a drawn vertex and a tree over every drawn
+ * triangle. It spares each ray the transform and the second descent of Embree's instances, and the fp32 rounding of their transforms.
+ * Indices are shared with the scene. */
 #include <stdlib.h>
 #include <stdio.h>
 
