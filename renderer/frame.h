@@ -32,7 +32,6 @@ struct renderer {
     struct lighting lighting;
     struct in_flight frames[RENDERER_IN_FLIGHT];
     unsigned first, count;         /* oldest in flight, how many */
-    struct render_scene *last_scene;
     double reload_checked_ms;
 };
 

@@ -31,8 +31,6 @@ void render_scene_destroy(struct render_scene *s)
     reference_destroy(s->reference);
     fit_geometry_finish(&s->fit);
     draw_scene_finish(&s->draw);
-    if (s->renderer->last_scene == s)
-        s->renderer->last_scene = NULL;
     free(s);
 }
 

@@ -139,12 +139,11 @@ bool renderer_submit(struct renderer *r, struct render_scene *s, const struct re
     f->info.width = settings->width;
     f->info.height = settings->height;
     f->info.format = settings->format;
-    if (!frame_render(r, s, settings, &f->info, err) || !start_readback(r, settings, &f->info, err))
-        return false;
     for (unsigned i = 0; i < r->count; i++)
         r->frames[(r->first + i) % RENDERER_IN_FLIGHT].timer_age++;
+    if (!frame_render(r, s, settings, &f->info, err) || !start_readback(r, settings, &f->info, err))
+        return false;
     r->count++;
-    r->last_scene = s;
     return true;
 }
 
@@ -153,8 +152,14 @@ bool renderer_collect(struct renderer *r, bool wait, void *pixels, size_t size, 
     if (r->count == 0)
         return false;
     struct in_flight *f = &r->frames[r->first];
+    unsigned waiting = r->readback.count;
     double start = clock_ms();
-    if (!gl_readback_finish_oldest(&r->readback, &r->gl, wait, pixels, size, err))
+    bool ok = gl_readback_finish_oldest(&r->readback, &r->gl, wait, pixels, size, err);
+    if (r->readback.count < waiting) {
+        r->first = (r->first + 1) % RENDERER_IN_FLIGHT;
+        r->count--;
+    }
+    if (!ok)
         return false;
     double now = clock_ms();
     f->info.frame_ms = now - f->start_ms;
@@ -163,8 +168,6 @@ bool renderer_collect(struct renderer *r, bool wait, void *pixels, size_t size, 
     else
         gl_timer_read(&r->timer, f->timer_age, f->info.pass_ms, PASS_COUNT);
     *info = f->info;
-    r->first = (r->first + 1) % RENDERER_IN_FLIGHT;
-    r->count--;
     return true;
 }
 

@@ -24,13 +24,15 @@ static bool make(struct gl_buffer *b, struct gl_context *gl, size_t size, unsign
                          size, (size_t)gl->caps.max_texture_buffer * texel_bytes(texel_format));
     glCreateBuffers(1, &b->id);
     glNamedBufferStorage(b->id, (GLsizeiptr)size, NULL, GL_DYNAMIC_STORAGE_BIT);
-    if (!gl_check(gl, err))
-        return false;
-    b->size = size;
     if (texel_format) {
         glCreateTextures(GL_TEXTURE_BUFFER, 1, &b->texture);
         glTextureBuffer(b->texture, texel_format, b->id);
     }
+    if (!gl_check(gl, err)) {
+        gl_buffer_finish(b);
+        return false;
+    }
+    b->size = size;
     return true;
 }
 

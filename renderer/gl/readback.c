@@ -6,17 +6,20 @@
 #include "base/error.h"
 #include "gl/context.h"
 
-/* A frame takes milliseconds; a device that says nothing for this long is lost. */
+/* A frame takes milliseconds; a GPU that says nothing for this long is lost. A rasterizer on the CPU is not: it may take minutes over a
+ * large picture, and cannot be lost. */
 #define LOST_AFTER_NS 60000000000u
 
-static void reserve(struct gl_readback_slot *slot, size_t size)
+static bool reserve(struct gl_readback_slot *slot, struct gl_context *gl, size_t size, struct error *err)
 {
     if (slot->capacity >= size)
-        return;
+        return true;
     glDeleteBuffers(slot->buffer != 0, &slot->buffer);
     glCreateBuffers(1, &slot->buffer);
     glNamedBufferStorage(slot->buffer, (GLsizeiptr)size, NULL, GL_CLIENT_STORAGE_BIT | GL_MAP_READ_BIT);
-    slot->capacity = size;
+    bool ok = gl_check(gl, err);
+    slot->capacity = ok ? size : 0;
+    return ok;
 }
 
 bool gl_readback_start(struct gl_readback *ring, struct gl_context *gl, uint32_t width, uint32_t height, unsigned format,
@@ -26,14 +29,17 @@ bool gl_readback_start(struct gl_readback *ring, struct gl_context *gl, uint32_t
         return false;
     struct gl_readback_slot *slot = &ring->slots[(ring->first + ring->count) % GL_READBACK_SLOTS];
     slot->size = pixel_bytes * width * height;
-    reserve(slot, slot->size);
+    if (!reserve(slot, gl, slot->size, err))
+        return false;
     glBindBuffer(GL_PIXEL_PACK_BUFFER, slot->buffer);
     glReadPixels(0, 0, (GLsizei)width, (GLsizei)height, format, type, NULL);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    if (!gl_check(gl, err))
+        return false;
     slot->fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     glFlush();
     ring->count++;
-    return gl_check(gl, err);
+    return true;
 }
 
 bool gl_readback_finish_oldest(struct gl_readback *ring, struct gl_context *gl, bool wait, void *out, size_t size, struct error *err)
@@ -41,7 +47,10 @@ bool gl_readback_finish_oldest(struct gl_readback *ring, struct gl_context *gl, 
     if (ring->count == 0)
         return false;
     struct gl_readback_slot *slot = &ring->slots[ring->first];
-    GLenum state = glClientWaitSync(slot->fence, 0, wait ? LOST_AFTER_NS : 0);
+    GLenum state;
+    do {
+        state = glClientWaitSync(slot->fence, 0, wait ? LOST_AFTER_NS : 0);
+    } while (state == GL_TIMEOUT_EXPIRED && wait && gl->caps.software);
     if (state == GL_TIMEOUT_EXPIRED && !wait)
         return false;
     if (state == GL_TIMEOUT_EXPIRED || state == GL_WAIT_FAILED) {

@@ -32,6 +32,10 @@ static bool make(struct gl_texture *t, struct gl_context *gl, unsigned format, u
         glTextureStorage2D(t->id, 1, format, (GLsizei)width, (GLsizei)height);
     else
         glTextureStorage3D(t->id, 1, format, (GLsizei)width, (GLsizei)height, (GLsizei)layers);
+    if (!gl_check(gl, err)) {
+        gl_texture_finish(t);
+        return false;
+    }
     glTextureParameteri(t->id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(t->id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTextureParameteri(t->id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
