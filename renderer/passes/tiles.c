@@ -17,7 +17,6 @@ struct rectangle {
 
 static bool upload(struct tiles *t, struct gl_context *gl, const struct rectangle *rectangles, uint32_t count, struct error *err)
 {
-    unsigned before = t->rectangles.id;
     t->count = count;
     if (!gl_buffer_set(&t->rectangles, gl, rectangles, count * sizeof *rectangles, 0, err))
         return false;
@@ -28,8 +27,8 @@ static bool upload(struct tiles *t, struct gl_context *gl, const struct rectangl
         glVertexArrayBindingDivisor(t->vertex_array, 0, 1);
         glEnableVertexArrayAttrib(t->vertex_array, 0);
     }
-    if (t->rectangles.id != before)
-        glVertexArrayVertexBuffer(t->vertex_array, 0, t->rectangles.id, 0, sizeof *rectangles);
+    /* Every time: a buffer remade may have the old one's name, and is another one still. */
+    glVertexArrayVertexBuffer(t->vertex_array, 0, t->rectangles.id, 0, sizeof *rectangles);
     return gl_check(gl, err);
 }
 
