@@ -29,7 +29,7 @@ typedef uint32_t uvec4[4];
 #define UNIT_VISIBILITY 11    /* R32F array, a layer a light */
 #define UNIT_SHADOW_MAP 12    /* D32F array, a layer a map */
 #define UNIT_EMISSION 14      /* RGBA16F: emitted radiance, occlusion (-1: unlit) */
-#define UNIT_PICTURE 13       /* RGBA32F: picture before the last step */
+#define UNIT_PICTURE 13       /* struct lighting's samples */
 
 #define NO_TRIANGLE 0xffffffffu
 #define INSTANCE_MIRRORED 1u

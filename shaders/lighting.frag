@@ -17,7 +17,7 @@ vec3 arriving(int i, vec3 point, out vec3 l)
 {
     float kind = KINDS < 0 ? lights_position[i].w : float(KINDS);
     vec3 v = lights_position[i].xyz - point;
-    float inverse = inversesqrt(max(dot(v, v), 1e-12)), fall = inverse * inverse;
+    float inverse = inversesqrt(max(dot(v, v), 1e-30)), fall = inverse * inverse;
     l = v * inverse;
     /* KHR_lights_punctual: range (0: none), then the cone. */
     float q = lights_direction[i].w / fall;

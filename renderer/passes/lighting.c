@@ -78,11 +78,17 @@ static int common_kind(const struct lighting_input *in)
     return in->light_count ? (int)in->lights[0].kind : -1;
 }
 
+/* Depths, normals and ids are shown as they are: they are no light. */
+static enum lighting_display display_of(const struct lighting_input *in)
+{
+    bool light = in->show == LIGHTING_SHADED || in->show == LIGHTING_VISIBILITY;
+    return light ? in->display : LIGHTING_LINEAR;
+}
+
 static struct gl_program *lighting_program(const struct lighting_input *in, struct error *err)
 {
     char defines[160];
-    bool colors = in->show == LIGHTING_SHADED || in->show == LIGHTING_VISIBILITY;
-    snprintf(defines, sizeof defines, "SHOW %d\nDISPLAY %d\nLIGHTS %zu\nKINDS %d\nRESOLVE_LATER %d\n%s", in->show, colors ? in->display : LIGHTING_LINEAR,
+    snprintf(defines, sizeof defines, "SHOW %d\nDISPLAY %d\nLIGHTS %zu\nKINDS %d\nRESOLVE_LATER %d\n%s", in->show, display_of(in),
              in->light_count, common_kind(in), in->aa_side > 1, in->scene->has_emission ? "EMISSION\n" : "");
     return gl_programs_get(in->scene->gl->programs, "tiles.vert", "lighting.frag", defines, err);
 }
@@ -90,7 +96,7 @@ static struct gl_program *lighting_program(const struct lighting_input *in, stru
 static bool downsample(struct lighting *l, const struct lighting_input *in, struct error *err)
 {
     char defines[32];
-    snprintf(defines, sizeof defines, "DISPLAY %d\n", in->display);
+    snprintf(defines, sizeof defines, "DISPLAY %d\n", display_of(in));
     struct gl_program *program = gl_programs_get(in->scene->gl->programs, "full_screen.vert", "downsample.frag", defines, err);
     if (!program)
         return false;
@@ -109,9 +115,10 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
     uint32_t width = in->gbuffer->ids.width, height = in->gbuffer->ids.height;
     static const float nothing[4];
     bool many = in->aa_side > 1;
-    GLenum format = in->display == LIGHTING_LINEAR ? GL_RGBA32F : GL_RGBA8;
+    bool linear = in->display == LIGHTING_LINEAR;
+    GLenum format = linear ? GL_RGBA32F : GL_RGBA8, samples_format = linear ? GL_RGBA32F : GL_RGBA16F;
     if (!gl_texture_size(&l->result, gl, format, width / in->aa_side, height / in->aa_side, err) ||
-        (many && !gl_texture_size(&l->samples, gl, GL_RGBA16F, width, height, err)) || !upload_block(l, in, err))
+        (many && !gl_texture_size(&l->samples, gl, samples_format, width, height, err)) || !upload_block(l, in, err))
         return false;
     struct gl_program *program = lighting_program(in, err);
     if (!program)

@@ -31,7 +31,7 @@ struct lighting_input {
 
 struct lighting {
     struct gl_buffer block;
-    struct gl_texture samples; /* RGBA16F at the gbuffer's size; aa_side > 1 only */
+    struct gl_texture samples; /* at the gbuffer's size, RGBA16F, or RGBA32F if display is linear; aa_side > 1 only */
     struct gl_texture result;
     struct gl_target target;   /* bound, with `result`, when lighting_run() returns */
 };
