@@ -16,8 +16,10 @@ int wrap(int i, int size, uint mode)
     if (mode == 2u)
         return clamp(i, 0, size - 1);
     int period = mode == 1u ? 2 * size : size;
+    /* A float quotient, since integer division is slow: GPUs may round it to the integer above or below, so the remainder is set right. */
     int m = i - period * int(floor(float(i) / float(period)));
-    return m < size ? m : period - 1 - m;
+    m += m < 0 ? period : m >= period ? -period : 0;
+    return clamp(m < size ? m : period - 1 - m, 0, size - 1);
 }
 
 uint texel_at(uvec4 texture_info, ivec2 size, uint first, ivec2 at)
