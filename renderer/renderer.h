@@ -67,6 +67,7 @@ struct render_settings {
     enum camera_pass camera_pass;
     enum camera_pass map_pass;     /* the same choice for depth maps from lights */
     enum pixel_format format;
+    uint32_t viewer;               /* whose picture: a light that moves takes along what was built for it, but only from its own viewer */
     bool finish_each_pass;         /* waits after each pass so that pass times are true on any device */
 };
 

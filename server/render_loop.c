@@ -119,6 +119,7 @@ static bool pick_view(struct render_loop *loop, struct picked *out, uint64_t *du
             return false;
         out->scene = scene_entry_ref(view->scene);
         out->settings = view->wanted.settings;
+        out->settings.viewer = view->id;
         loop->turn = index + 1;
         return true;
     }

@@ -45,7 +45,8 @@ void light_states_begin(struct light_states *s)
     }
 }
 
-/* First choice: built for just this light. Second: the same light's, before it moved. */
+/* First choice: built for just this light. Second: the same viewer's for the same light, before it moved; another viewer's would have to
+ * be built anew for each of the two in turn. */
 static struct light_state *find(struct light_states *s, const struct shadow_system *system, const struct shadow_params *params,
                                 const struct shadow_input *in)
 {
@@ -55,7 +56,7 @@ static struct light_state *find(struct light_states *s, const struct shadow_syst
             continue;
         if (same_light(&state->light, in->light))
             return state;
-        if (state->light_index == in->light_index && state->last_frame < s->frame)
+        if (state->viewer == in->viewer && state->light_index == in->light_index && state->last_frame < s->frame)
             moved = state;
     }
     return moved;
@@ -73,6 +74,7 @@ static struct light_state *create(struct light_states *s, const struct shadow_sy
     state->system = system;
     state->params = *params;
     state->light_index = in->light_index;
+    state->viewer = in->viewer;
     state->traced = in->trace_maps;
     if (system->init && !system->init(state->state, in, err)) {
         destroy(state);
@@ -117,6 +119,7 @@ struct light_state *light_states_get(struct light_states *s, const struct fit_ge
         *rebuilt = true;
     }
     state->light_index = in->light_index;
+    state->viewer = in->viewer;
     state->last_frame = s->frame;
     in->fit = system->flags & SHADOW_USES_MAPS ? &state->fit : NULL;
     return state;

@@ -16,6 +16,7 @@ struct light_state {
     struct shadow_params params;
     struct light light;
     unsigned light_index;
+    uint32_t viewer;          /* the last to ask; with light_index: whose structure is built anew when its light moves */
     bool prepared;
     bool traced;              /* its maps were traced */
     uint64_t last_frame;

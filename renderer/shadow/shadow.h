@@ -55,6 +55,7 @@ struct shadow_input {
     const struct scene *scene;
     const struct light *light;
     unsigned light_index;
+    uint32_t viewer;                  /* whose picture: light_states.h */
     const struct shadow_fit *fit;     /* NULL for systems without SHADOW_USES_MAPS */
     const double *params;             /* the values, in the order of the system's descriptors */
     const struct view *view;          /* the camera; resolve, and prepare of view-driven systems */
