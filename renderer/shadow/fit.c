@@ -12,21 +12,12 @@
 #define DEPTH_ROOM 1e-5
 /* Nearest depth of a map against its farthest, when casters come arbitrarily near the light. */
 #define NEAR_RATIO 1e-6
-
-/* Calls visit for the corners of every box of every caster, scene space. */
-static void for_corners(const struct fit_geometry *g, const uint32_t *casters, size_t count,
-                        void (*visit)(void *context, struct dvec3 p), void *context)
-{
-    for (size_t k = 0; k < count; k++) {
-        const struct instance *instance = &g->scene->instances[casters[k]];
-        for (size_t b = g->first_box[instance->mesh]; b < g->first_box[instance->mesh + 1]; b++) {
-            const struct fit_box *box = &g->boxes[b];
-            for (int c = 0; c < 8; c++)
-                visit(context, affine_point(&instance->to_scene, dvec3(c & 1 ? box->max[0] : box->min[0], c & 2 ? box->max[1] : box->min[1],
-                                                                      c & 4 ? box->max[2] : box->min[2])));
-        }
-    }
-}
+/* Steps towards a cone around the casters: at first; and in all, where the first do not end within the limit but near it. */
+#define CONE_STEPS 12
+#define CONE_STEPS_MAX 400
+#define CONE_NEARLY (1.25 * HALF_ANGLE_MAX)
+/* Corners looked at in all for that, so that a scene of many meshes does not hold up a frame. */
+#define CONE_CORNERS_MAX ((size_t)1 << 21)
 
 static bool casts(const struct instance *instance, const struct light *light)
 {
@@ -39,7 +30,8 @@ static bool casts(const struct instance *instance, const struct light *light)
     double side = light->kind == LIGHT_DIRECTIONAL
                       ? -dvec3_dot(instance->plane_normal, light->direction)
                       : dvec3_dot(instance->plane_normal, dvec3_sub(light->position, instance->plane_point));
-    return side * instance->others_side <= 0;
+    /* 0: a light in the plane sees it edge-on. */
+    return side * instance->others_side < 0;
 }
 
 /* False only if the box lies outside the cone for certain: its bounding sphere against the cone. */
@@ -78,6 +70,41 @@ static size_t find_casters(const struct fit_geometry *g, const struct light *lig
         out[n++] = i;
     }
     return n;
+}
+
+/* What is fitted to. */
+struct caster_set {
+    const struct fit_geometry *geometry;
+    const struct light *light;
+    const uint32_t *casters;
+    size_t count;
+};
+
+/* Calls visit for the corners of every box of every caster, scene space. All of them: boxes hold vertices, and a triangle reaches where none of
+ * its vertices is. */
+static void for_corners(const struct caster_set *set, void (*visit)(void *context, struct dvec3 p), void *context)
+{
+    const struct fit_geometry *g = set->geometry;
+    for (size_t k = 0; k < set->count; k++) {
+        const struct instance *instance = &g->scene->instances[set->casters[k]];
+        for (size_t b = g->first_box[instance->mesh]; b < g->first_box[instance->mesh + 1]; b++) {
+            const struct fit_box *box = &g->boxes[b];
+            for (int c = 0; c < 8; c++)
+                visit(context, affine_point(&instance->to_scene, dvec3(c & 1 ? box->max[0] : box->min[0], c & 2 ? box->max[1] : box->min[1],
+                                                                      c & 4 ? box->max[2] : box->min[2])));
+        }
+    }
+}
+
+static size_t count_corners(const struct caster_set *set)
+{
+    const struct fit_geometry *g = set->geometry;
+    size_t boxes = 0;
+    for (size_t k = 0; k < set->count; k++) {
+        uint32_t mesh = g->scene->instances[set->casters[k]].mesh;
+        boxes += g->first_box[mesh + 1] - g->first_box[mesh];
+    }
+    return 8 * boxes;
 }
 
 /* Axes that look along `forward`. Up is scene Y where that is possible. */
@@ -137,20 +164,21 @@ static void set_depths(struct view *v, double nearest, double farthest)
         v->near = 1e-12;
 }
 
-static void fit_directional(const struct fit_geometry *g, const struct light *light, bool cube, struct shadow_fit *out)
+static void fit_directional(const struct caster_set *set, bool cube, struct shadow_fit *out)
 {
+    const struct dbox *bounds = &set->geometry->scene->bounds;
     struct view *v = &out->maps[0];
     v->orthographic = true;
-    v->eye = dbox_center(&g->scene->bounds);
-    look_along(v, light->direction);
+    v->eye = dbox_center(bounds);
+    look_along(v, set->light->direction);
     struct extents e = no_extents(v);
-    for_corners(g, out->casters, out->caster_count, extend, &e);
+    for_corners(set, extend, &e);
     if (cube) {
-        double r = dbox_radius(&g->scene->bounds);
+        double r = dbox_radius(bounds);
         e.min_x = e.min_y = -r;
         e.max_x = e.max_y = r;
     }
-    double mz = MARGIN * (e.max_z - e.min_z) + DEPTH_ROOM * dbox_radius(&g->scene->bounds) + 1e-12;
+    double mz = MARGIN * (e.max_z - e.min_z) + DEPTH_ROOM * dbox_radius(bounds) + 1e-12;
     set_picture(v, &e);
     v->near = e.min_z - mz;
     v->far = e.max_z + mz;
@@ -174,27 +202,26 @@ static void find_farthest(void *context, struct dvec3 p)
     }
 }
 
-/* Axis of a small cone around all corners: Badoiu and Clarkson 2003's step towards the farthest, on the unit sphere. */
-static struct dvec3 cone_axis(const struct fit_geometry *g, const struct shadow_fit *fit, struct dvec3 eye, struct dvec3 first)
+/* Moves `axis` towards that of the smallest cone around all corners: Badoiu and Clarkson 2003's steps to the farthest, on the unit sphere. */
+static struct dvec3 improve_axis(const struct caster_set *set, struct dvec3 axis, int first_step, int end_step)
 {
-    struct direction_sum s = {.eye = eye, .axis = first};
-    for (int step = 1; step <= 12; step++) {
+    struct direction_sum s = {.eye = set->light->position, .axis = axis};
+    for (int step = first_step; step < end_step; step++) {
         s.worst = 2;
-        for_corners(g, fit->casters, fit->caster_count, find_farthest, &s);
+        for_corners(set, find_farthest, &s);
         s.axis = dvec3_normalize(dvec3_mad(s.axis, dvec3_sub(s.farthest, s.axis), 1.0 / (step + 1)));
     }
     return s.axis;
 }
 
-static bool cone_within_limit(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out, struct dvec3 axis,
-                              struct extents *e)
+/* Extents of the casters as seen along `axis`. */
+static struct extents look_at_casters(const struct caster_set *set, struct view *v, struct dvec3 axis)
 {
-    struct view *v = &out->maps[0];
-    v->eye = light->position;
+    v->eye = set->light->position;
     look_along(v, axis);
-    *e = no_extents(v);
-    for_corners(g, out->casters, out->caster_count, extend, e);
-    return e->widest <= HALF_ANGLE_MAX;
+    struct extents e = no_extents(v);
+    for_corners(set, extend, &e);
+    return e;
 }
 
 static double full_angle(const struct view *v)
@@ -211,34 +238,36 @@ static void finish_perspective(struct shadow_fit *out, const struct extents *e)
     out->map_count = 1;
 }
 
-/* A spot's casters reach beyond its cone: only the part inside counts, so the picture is the meeting of both. */
-static bool fit_spot(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out)
+/* A narrow spot's casters reach beyond its cone: only the part inside counts, so the picture is the meeting of both. */
+static void fit_narrow_spot(const struct caster_set *set, struct shadow_fit *out)
 {
-    if (light->outer > HALF_ANGLE_MAX)
-        return false;
-    struct extents e;
-    cone_within_limit(g, light, out, light->direction, &e);
-    double t = tan(light->outer);
+    struct extents e = look_at_casters(set, &out->maps[0], set->light->direction);
+    double t = tan(set->light->outer);
     bool behind = e.min_z <= 0;
     e.min_x = behind ? -t : fmax(e.min_x, -t);
     e.max_x = behind ? t : fmin(e.max_x, t);
     e.min_y = behind ? -t : fmax(e.min_y, -t);
     e.max_y = behind ? t : fmin(e.max_y, t);
-    if (e.min_x >= e.max_x || e.min_y >= e.max_y || e.max_z <= 0) {
-        out->map_count = 0;
-        return true;
-    }
-    finish_perspective(out, &e);
-    return true;
+    if (e.min_x < e.max_x && e.min_y < e.max_y && e.max_z > 0)
+        finish_perspective(out, &e);
 }
 
-static bool fit_one_perspective(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out)
+/* False: the casters do not lie within one map's angle. */
+static bool fit_one_perspective(const struct caster_set *set, struct shadow_fit *out)
 {
-    struct extents e;
-    struct dvec3 first = dvec3_normalize(dvec3_sub(dbox_center(&g->scene->instances[out->casters[0]].bounds), light->position));
-    if (dvec3_dot(first, first) == 0)
-        first = dvec3(0, -1, 0);
-    if (!cone_within_limit(g, light, out, cone_axis(g, out, light->position, first), &e))
+    struct view *v = &out->maps[0];
+    const struct instance *any = &set->geometry->scene->instances[set->casters[0]];
+    struct dvec3 axis = dvec3_normalize(dvec3_sub(dbox_center(&any->bounds), set->light->position));
+    if (dvec3_dot(axis, axis) == 0)
+        axis = dvec3(0, -1, 0);
+    axis = improve_axis(set, axis, 1, CONE_STEPS + 1);
+    struct extents e = look_at_casters(set, v, axis);
+    if (e.widest > HALF_ANGLE_MAX && e.widest < CONE_NEARLY) {
+        size_t affordable = CONE_CORNERS_MAX / (count_corners(set) + 1);
+        axis = improve_axis(set, axis, CONE_STEPS + 1, affordable < CONE_STEPS_MAX ? (int)affordable : CONE_STEPS_MAX);
+        e = look_at_casters(set, v, axis);
+    }
+    if (e.widest > HALF_ANGLE_MAX)
         return false;
     finish_perspective(out, &e);
     return true;
@@ -266,13 +295,14 @@ static void use_face(void *context, struct dvec3 p)
 }
 
 /* Caster by caster: one that lies wholly beyond a side plane is not in the face. */
-static bool face_holds_casters(const struct fit_geometry *g, const struct shadow_fit *out, struct view *v)
+static bool face_holds_casters(const struct caster_set *set, struct view *v)
 {
     bool any = false;
     double farthest = 0, nearest = INFINITY;
-    for (size_t k = 0; k < out->caster_count; k++) {
+    for (size_t k = 0; k < set->count; k++) {
+        struct caster_set one = {set->geometry, set->light, set->casters + k, 1};
         struct face_use u = {v, INFINITY, -INFINITY, {true, true, true, true}, true};
-        for_corners(g, out->casters + k, 1, use_face, &u);
+        for_corners(&one, use_face, &u);
         if (u.outside[0] || u.outside[1] || u.outside[2] || u.outside[3] || u.behind)
             continue;
         any = true;
@@ -284,16 +314,19 @@ static bool face_holds_casters(const struct fit_geometry *g, const struct shadow
     return any;
 }
 
-static void fit_cube_faces(const struct fit_geometry *g, const struct light *light, struct shadow_fit *out)
+/* The faces overlap by a fraction of a texel, so that no point falls between two of them by rounding. */
+static void fit_cube_faces(const struct caster_set *set, struct shadow_fit *out)
 {
     static const double axes[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    const double edge = 1 + MARGIN;
     out->map_count = 0;
     for (int face = 0; face < 6; face++) {
         struct view *v = &out->maps[out->map_count];
         uint32_t size = v->width;
-        *v = (struct view){.width = size, .height = size, .eye = light->position, .left = -1, .right_edge = 1, .bottom = -1, .top = 1};
+        *v = (struct view){.width = size, .height = size, .eye = set->light->position, .left = -edge, .right_edge = edge, .bottom = -edge,
+                           .top = edge};
         look_along(v, dvec3(axes[face][0], axes[face][1], axes[face][2]));
-        if (face_holds_casters(g, out, v))
+        if (face_holds_casters(set, v))
             out->fov_deg[out->map_count++] = 90;
     }
 }
@@ -308,8 +341,11 @@ void shadow_fit_compute(const struct fit_geometry *g, const struct light *light,
     out->caster_count = find_casters(g, light, casters);
     if (out->caster_count == 0)
         return;
+    struct caster_set set = {g, light, casters, out->caster_count};
     if (light->kind == LIGHT_DIRECTIONAL)
-        fit_directional(g, light, cube, out);
-    else if (cube || !(light->kind == LIGHT_SPOT ? fit_spot(g, light, out) : fit_one_perspective(g, light, out)))
-        fit_cube_faces(g, light, out);
+        fit_directional(&set, cube, out);
+    else if (!cube && light->kind == LIGHT_SPOT && light->outer <= HALF_ANGLE_MAX)
+        fit_narrow_spot(&set, out);
+    else if (cube || !fit_one_perspective(&set, out))
+        fit_cube_faces(&set, out);
 }
