@@ -12,12 +12,12 @@
 #define DEPTH_ROOM 1e-5
 /* Nearest depth of a map against its farthest, when casters come arbitrarily near the light. */
 #define NEAR_RATIO 1e-6
-/* Steps towards a cone around the casters: at first; and in all, where the first do not end within the limit but near it. */
+/* Steps towards a cone around the casters' boxes. Where that is too wide, but not by so much, their vertices decide, in at most so many
+ * steps and looks at a vertex, so that a large scene does not hold up a frame. */
 #define CONE_STEPS 12
-#define CONE_STEPS_MAX 400
-#define CONE_NEARLY (1.25 * HALF_ANGLE_MAX)
-/* Corners looked at in all for that, so that a scene of many meshes does not hold up a frame. */
-#define CONE_CORNERS_MAX ((size_t)1 << 21)
+#define CONE_NEARLY (1.4 * HALF_ANGLE_MAX)
+#define VERTEX_STEPS_MAX 200
+#define VERTEX_LOOKS_MAX ((size_t)1 << 23)
 
 static bool casts(const struct instance *instance, const struct light *light)
 {
@@ -78,15 +78,30 @@ struct caster_set {
     const struct light *light;
     const uint32_t *casters;
     size_t count;
+    bool vertices; /* look at the vertices, not at the boxes around them */
 };
 
-/* Calls visit for the corners of every box of every caster, scene space. All of them: boxes hold vertices, and a triangle reaches where none of
- * its vertices is. */
+static void for_vertices(const struct scene *scene, const struct instance *instance, void (*visit)(void *context, struct dvec3 p), void *context)
+{
+    const struct mesh *mesh = &scene->meshes[instance->mesh];
+    for (size_t v = mesh->first_vertex; v < (size_t)mesh->first_vertex + mesh->vertex_count; v++) {
+        struct dvec3 p = dvec3_from_float(scene->positions[v]);
+        if (dvec3_finite(p))
+            visit(context, affine_point(&instance->to_scene, p));
+    }
+}
+
+/* Calls visit for the corners of every box of every caster (or for its vertices), scene space. For all, a spot's too: boxes hold vertices, and a
+ * triangle reaches where none of its vertices is. */
 static void for_corners(const struct caster_set *set, void (*visit)(void *context, struct dvec3 p), void *context)
 {
     const struct fit_geometry *g = set->geometry;
     for (size_t k = 0; k < set->count; k++) {
         const struct instance *instance = &g->scene->instances[set->casters[k]];
+        if (set->vertices) {
+            for_vertices(g->scene, instance, visit, context);
+            continue;
+        }
         for (size_t b = g->first_box[instance->mesh]; b < g->first_box[instance->mesh + 1]; b++) {
             const struct fit_box *box = &g->boxes[b];
             for (int c = 0; c < 8; c++)
@@ -96,15 +111,13 @@ static void for_corners(const struct caster_set *set, void (*visit)(void *contex
     }
 }
 
-static size_t count_corners(const struct caster_set *set)
+static size_t count_vertices(const struct caster_set *set)
 {
-    const struct fit_geometry *g = set->geometry;
-    size_t boxes = 0;
-    for (size_t k = 0; k < set->count; k++) {
-        uint32_t mesh = g->scene->instances[set->casters[k]].mesh;
-        boxes += g->first_box[mesh + 1] - g->first_box[mesh];
-    }
-    return 8 * boxes;
+    const struct scene *scene = set->geometry->scene;
+    size_t sum = 0;
+    for (size_t k = 0; k < set->count; k++)
+        sum += scene->meshes[scene->instances[set->casters[k]].mesh].vertex_count;
+    return sum;
 }
 
 /* Axes that look along `forward`. Up is scene Y where that is possible. */
@@ -263,9 +276,11 @@ static bool fit_one_perspective(const struct caster_set *set, struct shadow_fit 
     axis = improve_axis(set, axis, 1, CONE_STEPS + 1);
     struct extents e = look_at_casters(set, v, axis);
     if (e.widest > HALF_ANGLE_MAX && e.widest < CONE_NEARLY) {
-        size_t affordable = CONE_CORNERS_MAX / (count_corners(set) + 1);
-        axis = improve_axis(set, axis, CONE_STEPS + 1, affordable < CONE_STEPS_MAX ? (int)affordable : CONE_STEPS_MAX);
-        e = look_at_casters(set, v, axis);
+        struct caster_set exact = *set;
+        exact.vertices = true;
+        size_t affordable = VERTEX_LOOKS_MAX / (count_vertices(set) + 1);
+        axis = improve_axis(&exact, axis, CONE_STEPS + 1, CONE_STEPS + (affordable < VERTEX_STEPS_MAX ? (int)affordable : VERTEX_STEPS_MAX));
+        e = look_at_casters(&exact, v, axis);
     }
     if (e.widest > HALF_ANGLE_MAX)
         return false;
@@ -300,7 +315,7 @@ static bool face_holds_casters(const struct caster_set *set, struct view *v)
     bool any = false;
     double farthest = 0, nearest = INFINITY;
     for (size_t k = 0; k < set->count; k++) {
-        struct caster_set one = {set->geometry, set->light, set->casters + k, 1};
+        struct caster_set one = {set->geometry, set->light, set->casters + k, 1, false};
         struct face_use u = {v, INFINITY, -INFINITY, {true, true, true, true}, true};
         for_corners(&one, use_face, &u);
         if (u.outside[0] || u.outside[1] || u.outside[2] || u.outside[3] || u.behind)
@@ -341,7 +356,7 @@ void shadow_fit_compute(const struct fit_geometry *g, const struct light *light,
     out->caster_count = find_casters(g, light, casters);
     if (out->caster_count == 0)
         return;
-    struct caster_set set = {g, light, casters, out->caster_count};
+    struct caster_set set = {g, light, casters, out->caster_count, false};
     if (light->kind == LIGHT_DIRECTIONAL)
         fit_directional(&set, cube, out);
     else if (!cube && light->kind == LIGHT_SPOT && light->outer <= HALF_ANGLE_MAX)

@@ -280,6 +280,22 @@ static void test_point_light_within_120_degrees_has_one_map(void **state)
     setting_close(&c);
 }
 
+/* A round caster near the light: boxes around its vertices reach far beyond it. Its radius with the wires is 1.01, its foot on the floor. */
+static void test_120_degrees_are_those_of_the_vertices(void **state)
+{
+    (void)state;
+    struct setting c = setting_load("builtin:ball");
+    struct light light = made_light(LIGHT_POINT, dvec3(0, 2.2, 0), dvec3(0, 0, 0));
+    fit(&c, &light, false);
+    assert_int_equal(c.fit.map_count, 1);
+    assert_true(fabs(c.fit.fov_deg[0] - 2 * 58.07) < 1);
+    check_vertices(&c, &light, "near the ball");
+    light.position.y = 2.15;
+    fit(&c, &light, false);
+    assert_int_equal(c.fit.map_count, 5);
+    setting_close(&c);
+}
+
 static void test_faces_without_casters_have_no_map(void **state)
 {
     (void)state;
@@ -491,6 +507,7 @@ int main(void)
         cmocka_unit_test(test_a_floor_seen_edge_on_casts_nothing),
         cmocka_unit_test(test_a_floor_with_something_below_casts),
         cmocka_unit_test(test_point_light_within_120_degrees_has_one_map),
+        cmocka_unit_test(test_120_degrees_are_those_of_the_vertices),
         cmocka_unit_test(test_faces_without_casters_have_no_map),
         cmocka_unit_test(test_light_inside_the_scene),
         cmocka_unit_test(test_spot_takes_what_its_cone_holds),
