@@ -329,6 +329,12 @@ static bool face_holds_casters(const struct caster_set *set, struct view *v)
     return any;
 }
 
+/* False only if the face lies outside the cone for certain: the cone around a face has a half angle of atan(sqrt(2)). */
+static bool face_meets_cone(const struct light *light, struct dvec3 axis)
+{
+    return light->kind != LIGHT_SPOT || acos(fmax(-1, fmin(1, dvec3_dot(axis, light->direction)))) <= light->outer + atan(M_SQRT2);
+}
+
 /* The faces overlap by a fraction of a texel, so that no point falls between two of them by rounding. */
 static void fit_cube_faces(const struct caster_set *set, struct shadow_fit *out)
 {
@@ -341,7 +347,7 @@ static void fit_cube_faces(const struct caster_set *set, struct shadow_fit *out)
         *v = (struct view){.width = size, .height = size, .eye = set->light->position, .left = -edge, .right_edge = edge, .bottom = -edge,
                            .top = edge};
         look_along(v, dvec3(axes[face][0], axes[face][1], axes[face][2]));
-        if (face_holds_casters(set, v))
+        if (face_meets_cone(set->light, v->forward) && face_holds_casters(set, v))
             out->fov_deg[out->map_count++] = 90;
     }
 }
