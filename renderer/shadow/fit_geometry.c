@@ -30,6 +30,14 @@ static void box_add(struct fit_box *box, const float p[3])
 
 static bool finite3(const float p[3]) { return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]); }
 
+/* Triangles without area cast nothing. Exactly collinear corners come out as exactly zero here. */
+static bool has_area(const float *const p[3])
+{
+    struct dvec3 a = dvec3_from_float(p[0]), n;
+    n = dvec3_cross(dvec3_sub(dvec3_from_float(p[1]), a), dvec3_sub(dvec3_from_float(p[2]), a));
+    return n.x != 0 || n.y != 0 || n.z != 0;
+}
+
 static void fill_cells(const struct scene *s, const struct mesh *mesh, struct fit_box cells[CELLS * CELLS * CELLS])
 {
     for (unsigned c = 0; c < CELLS * CELLS * CELLS; c++)
@@ -39,7 +47,7 @@ static void fill_cells(const struct scene *s, const struct mesh *mesh, struct fi
         const float *p[3];
         for (int k = 0; k < 3; k++)
             p[k] = s->positions[mesh->first_vertex + s->indices[mesh->first_index + i + (uint32_t)k]];
-        if (finite3(p[0]) && finite3(p[1]) && finite3(p[2]))
+        if (finite3(p[0]) && finite3(p[1]) && finite3(p[2]) && has_area(p))
             for (int k = 0; k < 3; k++)
                 box_add(&cells[cell_of(mesh, p[k])], p[k]);
     }

@@ -96,6 +96,14 @@ static bool matters(const struct light *light, struct dvec3 p)
     return light->kind != LIGHT_SPOT || dvec3_dot(d, light->direction) / length > cos(light->outer) + 1e-9;
 }
 
+static bool can_cast(const struct scene *scene, const struct instance *instance, uint32_t triangle)
+{
+    struct dvec3 a = instance_vertex(scene, instance, triangle, 0);
+    struct dvec3 e = dvec3_sub(instance_vertex(scene, instance, triangle, 1), a);
+    struct dvec3 f = dvec3_sub(instance_vertex(scene, instance, triangle, 2), a);
+    return dvec3_length(dvec3_cross(e, f)) > 0; /* not a number: false */
+}
+
 /* Every vertex of every caster projects into some map. */
 static void check_vertices(const struct setting *c, const struct light *light, const char *name)
 {
@@ -104,9 +112,9 @@ static void check_vertices(const struct setting *c, const struct light *light, c
         const struct instance *instance = &c->scene->instances[c->fit.casters[k]];
         uint32_t triangles = c->scene->meshes[instance->mesh].index_count / 3;
         for (uint32_t t = 0; t < triangles; t++)
-            for (unsigned corner = 0; corner < 3; corner++) {
+            for (unsigned corner = 0; corner < 3 && can_cast(c->scene, instance, t); corner++) {
                 struct dvec3 p = instance_vertex(c->scene, instance, t, corner);
-                if (!dvec3_finite(p) || !matters(light, p))
+                if (!matters(light, p))
                     continue;
                 checked++;
                 if (!in_some_map(&c->fit, p))
