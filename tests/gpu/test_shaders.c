@@ -228,7 +228,7 @@ static struct shot picture_with_cache(const char *path)
 static void spoil(const char *path, const char *name, size_t how)
 {
     char full[400];
-    snprintf(full, sizeof full, "%s/%s", path, name);
+    snprintf(full, sizeof full, "%.255s/%.63s", path, name);
     FILE *f = fopen(full, how == 0 ? "wb" : "r+b");
     assert_non_null(f);
     /* Empty; a word of the header; nonsense all over; half of it. */
