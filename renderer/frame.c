@@ -6,6 +6,7 @@
 
 #include "blocks.h"
 #include "draw/producer.h"
+#include "draw/put_vec4.h"
 #include "passes/camera.h"
 #include "render_scene.h"
 
@@ -38,21 +39,13 @@ static bool run_camera(struct renderer *r, struct render_scene *s, const struct 
     return ok;
 }
 
-static void put(vec4 out, struct dvec3 v, double w)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-    out[3] = (float)w;
-}
-
 /* What shaders/receiver.glsl and PARAM() read. */
 static bool bind_light(struct renderer *r, const struct shadow_input *in, size_t param_count, struct error *err)
 {
     struct light_block block = {0};
-    put(block.light_position, dvec3_sub(in->light->position, in->view->eye), in->light->kind);
-    put(block.light_direction, in->light->direction, in->light->kind == LIGHT_DIRECTIONAL ? 0 : in->light->range);
-    put(block.light_cone, dvec3(cos(in->light->outer), 0, 0), 0);
+    put_vec4(block.light_position, dvec3_sub(in->light->position, in->view->eye), in->light->kind);
+    put_vec4(block.light_direction, in->light->direction, in->light->kind == LIGHT_DIRECTIONAL ? 0 : in->light->range);
+    put_vec4(block.light_cone, dvec3(cos(in->light->outer), 0, 0), 0);
     struct params_block params = {0};
     for (size_t i = 0; i < param_count; i++)
         params.params[i / 4][i % 4] = (float)in->params[i];

@@ -4,17 +4,7 @@
 
 #include "base/error.h"
 #include "gl/context.h"
-
-static size_t texel_bytes(GLenum format)
-{
-    switch (format) {
-    case GL_RGBA32F:
-    case GL_RGBA32UI: return 16;
-    case GL_RG32F:
-    case GL_RG32UI: return 8;
-    default: return 4;
-    }
-}
+#include "gl/texel_bytes.h"
 
 static bool make(struct gl_buffer *b, struct gl_context *gl, size_t size, unsigned texel_format, struct error *err)
 {

@@ -5,18 +5,7 @@
 
 #include "base/error.h"
 #include "gl/context.h"
-
-static size_t texel_bytes(GLenum format)
-{
-    switch (format) {
-    case GL_RGBA32F:
-    case GL_RGBA32UI: return 16;
-    case GL_RGBA16F:
-    case GL_RG32UI:
-    case GL_RG32F: return 8;
-    default: return 4;
-    }
-}
+#include "gl/texel_bytes.h"
 
 static bool make(struct gl_texture *t, struct gl_context *gl, unsigned format, uint32_t width, uint32_t height, uint32_t layers,
                  bool flat, struct error *err)

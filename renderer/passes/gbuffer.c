@@ -7,16 +7,9 @@
 #include "base/error.h"
 #include "blocks.h"
 #include "draw/draw_scene.h"
+#include "draw/put_vec4.h"
 #include "gl/context.h"
 #include "scene/pixel.h"
-
-static void put(vec4 out, struct dvec3 v, double w)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-    out[3] = (float)w;
-}
 
 static uint32_t search_steps(size_t count)
 {
@@ -35,14 +28,14 @@ static bool upload_view(struct gbuffer *g, struct draw_scene *scene, struct erro
     view_ray(v, 0.5, 0.5 + v->height, &oy, &dy);
     double w = 1.0 / v->width, h = 1.0 / v->height;
     struct view_block block = {0};
-    put(block.ray_origin, dvec3_sub(o, v->eye), 0);
-    put(block.ray_origin_dx, dvec3_scale(dvec3_sub(ox, o), w), 0);
-    put(block.ray_origin_dy, dvec3_scale(dvec3_sub(oy, o), h), 0);
-    put(block.ray_direction, d, 0);
-    put(block.ray_direction_dx, dvec3_scale(dvec3_sub(dx, d), w), 0);
-    put(block.ray_direction_dy, dvec3_scale(dvec3_sub(dy, d), h), 0);
-    put(block.view_forward, v->forward, (v->top - v->bottom) * h);
-    put(block.view_clip, dvec3(v->near, isinf(v->far) ? 0 : v->far, v->orthographic), 0);
+    put_vec4(block.ray_origin, dvec3_sub(o, v->eye), 0);
+    put_vec4(block.ray_origin_dx, dvec3_scale(dvec3_sub(ox, o), w), 0);
+    put_vec4(block.ray_origin_dy, dvec3_scale(dvec3_sub(oy, o), h), 0);
+    put_vec4(block.ray_direction, d, 0);
+    put_vec4(block.ray_direction_dx, dvec3_scale(dvec3_sub(dx, d), w), 0);
+    put_vec4(block.ray_direction_dy, dvec3_scale(dvec3_sub(dy, d), h), 0);
+    put_vec4(block.view_forward, v->forward, (v->top - v->bottom) * h);
+    put_vec4(block.view_clip, dvec3(v->near, isinf(v->far) ? 0 : v->far, v->orthographic), 0);
     uvec4 counts = {(uint32_t)scene->scene->instance_count, search_steps(scene->scene->instance_count), 0, 0};
     memcpy(block.view_counts, counts, sizeof counts);
     return gl_buffer_set(&g->view_block, scene->gl, &block, sizeof block, 0, err);

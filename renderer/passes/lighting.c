@@ -7,6 +7,7 @@
 
 #include "blocks.h"
 #include "draw/draw_scene.h"
+#include "draw/put_vec4.h"
 #include "gl/context.h"
 #include "gl/program.h"
 #include "passes/gbuffer.h"
@@ -30,19 +31,11 @@ double lighting_illuminance(const struct scene *scene, const struct light *light
     return sum;
 }
 
-static void put(vec4 out, struct dvec3 v, double w)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-    out[3] = (float)w;
-}
-
 /* KHR_lights_punctual, "Inner and Outer Cone Angles". */
 static void put_cone(vec4 out, const struct light *l)
 {
     double scale = 1 / fmax(0.001, cos(l->inner) - cos(l->outer));
-    put(out, dvec3(scale, -cos(l->outer) * scale, 0), 0);
+    put_vec4(out, dvec3(scale, -cos(l->outer) * scale, 0), 0);
 }
 
 /* A neutral dark grey behind everything, as shown: no exposure, no tone curve. */
@@ -58,13 +51,13 @@ static bool upload_block(struct lighting *out, const struct lighting_input *in, 
     struct dvec3 eye = in->gbuffer->view.view.eye;
     for (size_t i = 0; i < in->light_count; i++) {
         const struct light *l = &in->lights[i];
-        put(block.lights_position[i], dvec3_sub(l->position, eye), l->kind);
-        put(block.lights_direction[i], l->direction, l->kind != LIGHT_DIRECTIONAL && l->range > 0 ? 1 / (l->range * l->range) : 0);
-        put(block.lights_color[i], dvec3_scale(dvec3_from_float(l->color), l->intensity), 0);
+        put_vec4(block.lights_position[i], dvec3_sub(l->position, eye), l->kind);
+        put_vec4(block.lights_direction[i], l->direction, l->kind != LIGHT_DIRECTIONAL && l->range > 0 ? 1 / (l->range * l->range) : 0);
+        put_vec4(block.lights_color[i], dvec3_scale(dvec3_from_float(l->color), l->intensity), 0);
         put_cone(block.lights_cone[i], l);
     }
     double unit = dbox_radius(&in->scene->scene->bounds);
-    put(block.picture, dvec3(in->exposure, in->ambient, in->aa_side), unit > 0 ? unit : 1);
+    put_vec4(block.picture, dvec3(in->exposure, in->ambient, in->aa_side), unit > 0 ? unit : 1);
     memcpy(block.background, background_of(in), sizeof block.background);
     return gl_buffer_set(&out->block, in->scene->gl, &block, sizeof block, 0, err);
 }

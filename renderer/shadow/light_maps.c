@@ -8,6 +8,7 @@
 #include "base/job_pool.h"
 #include "blocks.h"
 #include "draw/draw_scene.h"
+#include "draw/put_vec4.h"
 #include "gl/context.h"
 #include "trace/tracer.h"
 
@@ -87,10 +88,7 @@ bool light_maps_render(struct light_maps *m, const struct shadow_input *in, stru
 
 static void put_row(vec4 out, struct dvec3 axis, struct dvec3 from_map_eye)
 {
-    out[0] = (float)axis.x;
-    out[1] = (float)axis.y;
-    out[2] = (float)axis.z;
-    out[3] = (float)dvec3_dot(axis, from_map_eye);
+    put_vec4(out, axis, dvec3_dot(axis, from_map_eye));
 }
 
 static void put_map(struct maps_block *block, unsigned i, const struct view *map, struct dvec3 camera_eye)
