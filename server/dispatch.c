@@ -11,6 +11,14 @@
 #include "output.h"
 #include "server.h"
 
+const struct method *method_find(const char *name)
+{
+    for (const struct method *method = methods; method->name; method++)
+        if (strcmp(method->name, name) == 0)
+            return method;
+    return NULL;
+}
+
 enum rpc_code dispatch_code(const struct error *err)
 {
     switch (err->code) {
@@ -96,14 +104,10 @@ static bool may(const struct server *server, const struct call *call, struct err
 static enum outcome run_method(struct server *server, struct call *call, json_t **result, struct error *err)
 {
     struct given given;
-    void *params = calloc(1, call->method->params_size ? call->method->params_size : 1);
-    enum outcome outcome = OUTCOME_FAILED;
-    if (!params)
-        error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory");
-    else if (members_read(call->params, "", call->method->members, params, &given, err))
-        outcome = call->method->run(server, call, params, given, result, err);
-    free(params);
-    return outcome;
+    struct params params = {0};
+    if (!members_read(call->params, "", call->method->members, &params, &given, err))
+        return OUTCOME_FAILED;
+    return call->method->run(server, call, &params, given, result, err);
 }
 
 /* Runs a call and answers it, or keeps it for later. Takes it over. */
@@ -213,7 +217,7 @@ void dispatch_render(struct server *server, uint64_t request, const char *allow_
     call->session = request;
     call->http = true;
     call->params = params;
-    call->method = method_find("render.snapshot");
+    call->method = method_find(METHOD_RENDER_SNAPSHOT);
     snprintf(call->allow_origin, sizeof call->allow_origin, "%s", allow_origin ? allow_origin : "");
     run(server, call);
 }

@@ -160,20 +160,9 @@ void http_request(void *context, uint64_t id, unsigned tag, const struct net_req
 
 static int status_of(enum rpc_code code)
 {
-    switch (code) {
-    case RPC_PARSE_ERROR:
-    case RPC_INVALID_REQUEST:
-    case RPC_INVALID_PARAMS: return 400;
-    case RPC_FORBIDDEN: return 403;
-    case RPC_NO_SUCH_SCENE:
-    case RPC_NO_SUCH_VIEW:
-    case RPC_METHOD_NOT_FOUND: return 404;
-    case RPC_BAD_SCENE: return 422;
-    case RPC_BUSY:
-    case RPC_NO_DEVICE: return 503;
-    case RPC_INTERNAL:
-    case RPC_IO: break;
-    }
+    for (const struct protocol_error *e = protocol_errors; e->code; e++)
+        if (e->code == code)
+            return e->http;
     return 500;
 }
 

@@ -70,9 +70,26 @@ static bool read_number(const struct member *m, const json_t *value, void *field
     return true;
 }
 
+static bool read_listed(const struct member *m, const json_t *value, void *field, const char *name, struct error *err)
+{
+    char list[120] = "";
+    for (const double *v = m->values; *v != 0; v++) {
+        if (json_is_number(value) && json_number_value(value) == *v) {
+            *(uint64_t *)field = (uint64_t)*v;
+            return true;
+        }
+        char word[32];
+        snprintf(word, sizeof word, "%.0f", *v);
+        append(list, sizeof list, word);
+    }
+    return error_set(err, ERROR_USAGE, name, "%s: no such choice; one of %s is accepted", name, list);
+}
+
 /* 5.0 is an integer too: JSON does not tell them apart. */
 static bool read_integer(const struct member *m, const json_t *value, void *field, const char *name, struct error *err)
 {
+    if (m->values)
+        return read_listed(m, value, field, name, err);
     if (!in_range(m, value) || floor(json_number_value(value)) != json_number_value(value))
         return error_set(err, ERROR_USAGE, name, "%s: an integer is wanted; %.0f to %.0f is accepted", name, m->min, m->max);
     *(uint64_t *)field = (uint64_t)json_number_value(value);
@@ -147,7 +164,7 @@ bool members_read(const json_t *object, const char *where, const struct member *
             continue;
         if (!read_member(m, value, (char *)out + m->offset, name.text, err))
             return false;
-        given->bits |= 1ull << (m - table);
+        given->bits |= 1ull << m->bit;
     }
     return true;
 }

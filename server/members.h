@@ -1,4 +1,5 @@
-/* The members of a JSON object as data: one table per message drives what is read, what is refused and the sentence that says why. */
+/* The members of a JSON object as data: one table drives what is read, what is refused and the sentence that says why.
+ * The tables of the protocol are made from proto/gnomon.openrpc.json by the build (protocol.h). */
 #pragma once
 
 #include <stdbool.h>
@@ -29,10 +30,12 @@ struct member {
     double min, max;
     size_t count;               /* MEMBER_NUMBERS */
     const char *const *choices; /* MEMBER_CHOICE; ended by NULL */
+    const double *values;       /* MEMBER_INTEGER: what alone is accepted; ended by 0. NULL: min..max */
+    unsigned bit;               /* in struct given; 0..63 */
     bool required;
 };
 
-/* At most 64 members a table. */
+/* Which members were there. */
 struct given {
     uint64_t bits;
 };

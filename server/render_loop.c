@@ -91,7 +91,7 @@ static struct encode_job *job_of_view(struct stream_view *view, bool still)
     job->header = (struct frame_header){
         .kind = GNMF_STREAM,
         .codec = state->codec,
-        .flags = (uint16_t)(GNMF_KEY | (still ? GNMF_STILL : 0) | (state->codec == GNMF_JPEG ? 0 : GNMF_LOSSLESS)),
+        .flags = (uint16_t)(GNMF_KEY | (still ? GNMF_STILL : 0) | (state->codec == GNMF_PNG ? GNMF_LOSSLESS : 0)),
         .view = view->id,
         .input_time_us = state->input_time_us,
         .input_seq = state->input_seq,

@@ -47,7 +47,7 @@ static void on_opened(void *context, uint64_t id, unsigned tag)
         return;
     }
     atomic_fetch_add(&server->metrics.clients, 1);
-    dispatch_notify(server, id, "server.hello", hello_params(server, id));
+    dispatch_notify(server, id, NOTIFY_SERVER_HELLO, hello_params(server, id));
 }
 
 static void on_message(void *context, uint64_t id, const char *text, size_t size) { dispatch_message(context, id, text, size); }
@@ -74,7 +74,7 @@ static void tell_view_error(struct server *server, const struct encode_job *job)
 {
     json_t *params = dispatch_error_json(dispatch_code(&job->err), &job->err);
     json_object_set_new(params, "view", json_integer(job->header.view));
-    dispatch_notify(server, job->session, "view.error", params);
+    dispatch_notify(server, job->session, NOTIFY_VIEW_ERROR, params);
 }
 
 static void send_frame(struct server *server, struct encode_job *job)
@@ -122,7 +122,7 @@ static void on_tick(void *context)
     for (struct view_record *view = server->sessions.views; view; view = view->link) {
         json_t *stats = view_stats(server, view, 1.0, &view->frames_told, &view->bytes_told);
         if (stats && net_queued(server->net, view->session) == 0)
-            dispatch_notify(server, view->session, "view.stats", stats);
+            dispatch_notify(server, view->session, NOTIFY_VIEW_STATS, stats);
         else
             json_decref(stats);
     }

@@ -8,26 +8,11 @@
 #include "base/error.h"
 #include "lights.h"
 #include "listings.h"
-#include "members.h"
+#include "protocol.h"
 #include "numbers.h"
 #include "output.h"
 
-/* As far as a coordinate's square stays finite in fp32. */
-#define COORDINATE_MAX  1e18
 #define EXPOSURE_MAX_EV 64
-
-struct look_at_members {
-    double eye[3], target[3], up[3], fov;
-};
-
-static const struct member look_at_table[] = {
-    {"eye", MEMBER_NUMBERS, offsetof(struct look_at_members, eye), -COORDINATE_MAX, COORDINATE_MAX, .count = 3, .required = true},
-    {"target", MEMBER_NUMBERS, offsetof(struct look_at_members, target), -COORDINATE_MAX, COORDINATE_MAX, .count = 3,
-     .required = true},
-    {"up", MEMBER_NUMBERS, offsetof(struct look_at_members, up), -COORDINATE_MAX, COORDINATE_MAX, .count = 3},
-    {"fov", MEMBER_NUMBER, offsetof(struct look_at_members, fov), FOV_MIN_DEG, FOV_MAX_DEG},
-    {0},
-};
 
 static struct dvec3 vector(const double v[3]) { return dvec3(v[0], v[1], v[2]); }
 
@@ -35,7 +20,7 @@ static bool read_look_at(const json_t *value, struct camera_choice *out, struct 
 {
     struct look_at_members m = {.up = {0, 1, 0}, .fov = FOV_DEFAULT_DEG};
     struct given given;
-    if (!members_read(value, "camera", look_at_table, &m, &given, err))
+    if (!members_read(value, "camera", look_at_members, &m, &given, err))
         return false;
     *out = (struct camera_choice){
         .source = CAMERA_LOOK_AT, .eye = vector(m.eye), .target = vector(m.target), .up = vector(m.up), .fov_deg = m.fov};
@@ -62,8 +47,10 @@ static bool read_light_key(struct light *light, const char *key, const json_t *v
 {
     double values[3];
     size_t count = light_key_values(light->kind, key, err);
-    if (count == 0)
+    if (count == 0) {
+        snprintf(err->field, sizeof err->field, "%s", key);
         return false;
+    }
     bool good = count == 1 ? json_is_number(value) : json_is_array(value) && json_array_size(value) == count;
     for (size_t i = 0; good && i < count; i++) {
         const json_t *item = count == 1 ? value : json_array_get(value, i);
@@ -122,12 +109,6 @@ bool wire_read_exposure(const json_t *value, struct render_settings *settings, s
     if (!is_auto)
         settings->exposure_ev = json_number_value(value);
     return true;
-}
-
-bool wire_check_aa(uint64_t aa, struct error *err)
-{
-    return aa == 1 || aa == 4 || aa == 16 ||
-           error_set(err, ERROR_USAGE, "aa", "aa: no such number of samples a pixel; 1, 4 or 16 is accepted");
 }
 
 json_t *wire_camera(const struct scene *scene, const struct camera *camera)

@@ -25,9 +25,6 @@ bool wire_read_lights(const struct scene *scene, const json_t *value, struct ren
 /* A number of stops, or "auto". */
 bool wire_read_exposure(const json_t *value, struct render_settings *settings, struct error *err);
 
-/* The samples a pixel: 1, 4 or 16. */
-bool wire_check_aa(uint64_t aa, struct error *err);
-
 /* {eye, target, up, fov} with the target at the scene's depth, for viewers that orbit. */
 json_t *wire_camera(const struct scene *scene, const struct camera *camera);
 json_t *wire_lights(const struct scene *scene, const struct render_settings *settings);

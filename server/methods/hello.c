@@ -1,6 +1,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "figures.h"
 #include "listings.h"
 #include "methods/methods.h"
 #include "output.h"
@@ -18,14 +19,17 @@ static json_t *limits(void)
 
 static json_t *capabilities(const struct server *server)
 {
-    json_t *shows = json_array(), *names = json_array();
+    json_t *shows = json_array(), *names = json_array(), *notifications = json_array();
     for (size_t i = 0; show_names[i]; i++)
         json_array_append_new(shows, json_string(show_names[i]));
-    for (size_t i = 0; methods[i]; i++)
-        json_array_append_new(names, json_string(methods[i]->name));
-    return json_pack("{s:[s,s], s:[s,s,s,s], s:o, s:o, s:o}", "codecs", codec_names[GNMF_JPEG], codec_names[GNMF_PNG], "formats",
-                     codec_names[GNMF_PNG], codec_names[GNMF_JPEG], codec_names[GNMF_WEBP], codec_names[GNMF_EXR], "show", shows,
-                     "methods", names, "device", json_text(render_loop_device(server->loop)->renderer));
+    for (const struct method *method = methods; method->name; method++)
+        json_array_append_new(names, json_string(method->name));
+    for (size_t i = 0; protocol_notifications[i]; i++)
+        json_array_append_new(notifications, json_string(protocol_notifications[i]));
+    return json_pack("{s:[s,s,s], s:[s,s,s,s], s:o, s:o, s:o, s:o}", "codecs", codec_names[GNMF_JPEG], codec_names[GNMF_PNG],
+                     codec_names[GNMF_WEBP], "formats", codec_names[GNMF_PNG], codec_names[GNMF_JPEG], codec_names[GNMF_WEBP],
+                     codec_names[GNMF_EXR], "show", shows, "methods", names, "notifications", notifications, "device",
+                     json_text(render_loop_device(server->loop)->renderer));
 }
 
 /* The server's own first, then its files, then what is built in. */
@@ -73,9 +77,6 @@ json_t *view_stats(struct server *server, const struct view_record *view, double
     }
     const struct render_settings *settings = &view->state.settings;
     shadow_format(settings->system, &settings->params, algorithm, sizeof algorithm);
-    json_t *params = json_object();
-    for (size_t i = 0; i < settings->system->param_count; i++)
-        json_object_set_new(params, settings->system->params[i].name, json_real(settings->params.value[i]));
     double fps = (double)(v.frames - *frames) / seconds;
     json_int_t sent = (json_int_t)(v.bytes - *bytes);
     *frames = v.frames;
@@ -83,6 +84,6 @@ json_t *view_stats(struct server *server, const struct view_record *view, double
     return json_pack("{s:I, s:f, s:f, s:o, s:f, s:I, s:I, s:i, s:f, s:s, s:s, s:o, s:I}", "view", (json_int_t)view->id, "fps",
                      fps, "frame_ms", v.last.frame_ms, "passes", passes, "encode_ms", v.encode_us / 1000.0, "bytes", sent,
                      "dropped", (json_int_t)v.dropped, "in_flight", (int)v.in_flight_count, "rtt_ms", (double)v.rtt_us / 1000.0,
-                     "algorithm", settings->system->name, "settings", algorithm, "params", params, "shadow_bytes",
-                     (json_int_t)v.last.shadow_bytes);
+                     "algorithm", settings->system->name, "settings", algorithm, "params",
+                     figures_params(settings->system, &settings->params), "shadow_bytes", (json_int_t)v.last.shadow_bytes);
 }

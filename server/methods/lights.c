@@ -1,41 +1,9 @@
-#include <stddef.h>
-
 #include "base/error.h"
 #include "methods/methods.h"
 #include "server.h"
 #include "wire.h"
 
-struct light_params {
-    uint64_t view, index;
-    json_t *light;
-    uint64_t input_seq, input_time_us;
-};
-
-#define AT(field) offsetof(struct light_params, field)
-#define INPUT_MEMBERS                                                                \
-    {"input_seq", MEMBER_INTEGER, AT(input_seq), 0, UINT32_MAX},                     \
-        {"input_time_us", MEMBER_INTEGER, AT(input_time_us), 0, MEMBER_INTEGER_MAX}, \
-    {                                                                                \
-        0                                                                            \
-    }
-#define VIEW_MEMBER                                                       \
-    {                                                                     \
-        "view", MEMBER_INTEGER, AT(view), 1, UINT32_MAX, .required = true \
-    }
-#define INDEX_MEMBER                                                                     \
-    {                                                                                    \
-        "index", MEMBER_INTEGER, AT(index), 0, RENDERER_LIGHTS_MAX - 1, .required = true \
-    }
-#define LIGHT_MEMBER                                     \
-    {                                                    \
-        "light", MEMBER_ANY, AT(light), .required = true \
-    }
-
-static const struct member add_members[] = {VIEW_MEMBER, LIGHT_MEMBER, INPUT_MEMBERS};
-static const struct member set_members[] = {VIEW_MEMBER, INDEX_MEMBER, LIGHT_MEMBER, INPUT_MEMBERS};
-static const struct member remove_members[] = {VIEW_MEMBER, INDEX_MEMBER, INPUT_MEMBERS};
-
-static struct view_record *view_of(struct server *server, const struct call *call, const struct light_params *p)
+static struct view_record *view_of(struct server *server, const struct call *call, const struct params *p)
 {
     return sessions_find_view(&server->sessions, call->session, (uint32_t)p->view);
 }
@@ -50,7 +18,7 @@ static bool check_index(const struct view_record *view, uint64_t index, struct e
     return error_set(err, ERROR_USAGE, "index", "index: the view has %zu lights; 0 to %zu is accepted", count, count - 1);
 }
 
-static enum outcome publish(struct server *server, struct view_record *view, const struct light_params *p, uint64_t index,
+static enum outcome publish(struct server *server, struct view_record *view, const struct params *p, uint64_t index,
                             json_t **result)
 {
     view_publish(server, view, p->input_seq, p->input_time_us);
@@ -59,10 +27,9 @@ static enum outcome publish(struct server *server, struct view_record *view, con
     return OUTCOME_DONE;
 }
 
-static enum outcome add_light(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                              struct error *err)
+enum outcome method_light_add(struct server *server, struct call *call, const struct params *p, struct given given,
+                              json_t **result, struct error *err)
 {
-    const struct light_params *p = params;
     struct view_record *view = view_of(server, call, p);
     (void)given;
     if (!view)
@@ -78,10 +45,9 @@ static enum outcome add_light(struct server *server, struct call *call, const vo
     return publish(server, view, p, settings->light_count - 1, result);
 }
 
-static enum outcome set_light(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                              struct error *err)
+enum outcome method_light_set(struct server *server, struct call *call, const struct params *p, struct given given,
+                              json_t **result, struct error *err)
 {
-    const struct light_params *p = params;
     struct view_record *view = view_of(server, call, p);
     (void)given;
     if (!view)
@@ -92,10 +58,9 @@ static enum outcome set_light(struct server *server, struct call *call, const vo
     return publish(server, view, p, p->index, result);
 }
 
-static enum outcome remove_light(struct server *server, struct call *call, const void *params, struct given given,
+enum outcome method_light_remove(struct server *server, struct call *call, const struct params *p, struct given given,
                                  json_t **result, struct error *err)
 {
-    const struct light_params *p = params;
     struct view_record *view = view_of(server, call, p);
     (void)given;
     if (!view)
@@ -108,7 +73,3 @@ static enum outcome remove_light(struct server *server, struct call *call, const
         settings->lights[i] = settings->lights[i + 1];
     return publish(server, view, p, p->index, result);
 }
-
-const struct method method_light_add = {"light.add", add_members, sizeof(struct light_params), false, add_light};
-const struct method method_light_set = {"light.set", set_members, sizeof(struct light_params), false, set_light};
-const struct method method_light_remove = {"light.remove", remove_members, sizeof(struct light_params), false, remove_light};

@@ -1,12 +1,7 @@
-/* The methods, one file a subject; table.c lists them. */
+/* What the methods share; protocol.h declares the handlers themselves, one for each method of proto/gnomon.openrpc.json. */
 #pragma once
 
 #include "dispatch.h"
-
-extern const struct method method_scene_load, method_scene_describe;
-extern const struct method method_view_open, method_view_set, method_view_close, method_frame_ack;
-extern const struct method method_light_add, method_light_set, method_light_remove;
-extern const struct method method_render_snapshot;
 
 struct view_record;
 

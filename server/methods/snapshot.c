@@ -1,4 +1,3 @@
-#include <stddef.h>
 #include <stdlib.h>
 
 #include "base/error.h"
@@ -8,56 +7,7 @@
 #include "wire.h"
 
 #define SNAPSHOT_QUALITY_DEFAULT 90
-#define DEADLINE_MAX_MS          3600000
 #define WEBP_SIDE_MAX            16383
-
-struct snapshot_params {
-    const char *scene;
-    double size[2];
-    json_t *camera, *lights, *exposure;
-    const char *algorithm;
-    int show, format, tonemap;
-    uint64_t quality, aa, deadline_ms, request_id;
-    double ambient, time;
-};
-
-enum {
-    SCENE,
-    SIZE,
-    CAMERA,
-    LIGHTS,
-    ALGORITHM,
-    SHOW,
-    FORMAT,
-    QUALITY,
-    TIME,
-    DEADLINE,
-    REQUEST_ID,
-    EXPOSURE,
-    AMBIENT,
-    TONEMAP,
-    AA
-};
-
-#define AT(field) offsetof(struct snapshot_params, field)
-static const struct member snapshot_members[] = {
-    [SCENE] = {"scene", MEMBER_STRING, AT(scene), .max = SCENE_NAME_MAX - 1},
-    [SIZE] = {"size", MEMBER_NUMBERS, AT(size), 1, RENDERER_SIZE_MAX, .count = 2},
-    [CAMERA] = {"camera", MEMBER_ANY, AT(camera)},
-    [LIGHTS] = {"lights", MEMBER_ANY, AT(lights)},
-    [ALGORITHM] = {"algorithm", MEMBER_STRING, AT(algorithm), .max = 400},
-    [SHOW] = {"show", MEMBER_CHOICE, AT(show), .choices = show_names},
-    [FORMAT] = {"format", MEMBER_CHOICE, AT(format), .choices = codec_names},
-    [QUALITY] = {"quality", MEMBER_INTEGER, AT(quality), 1, 100},
-    [TIME] = {"time", MEMBER_NUMBER, AT(time), 0, 1e9},
-    [DEADLINE] = {"deadline_ms", MEMBER_INTEGER, AT(deadline_ms), 1, DEADLINE_MAX_MS},
-    [REQUEST_ID] = {"request_id", MEMBER_INTEGER, AT(request_id), 0, UINT32_MAX},
-    [EXPOSURE] = {"exposure", MEMBER_ANY, AT(exposure)},
-    [AMBIENT] = {"ambient", MEMBER_NUMBER, AT(ambient), 0, 1e6},
-    [TONEMAP] = {"tonemap", MEMBER_CHOICE, AT(tonemap), .choices = tonemap_names},
-    [AA] = {"aa", MEMBER_INTEGER, AT(aa), 1, 16},
-    {0},
-};
 
 static bool apply_size(struct render_settings *settings, const double size[2], enum gnmf_codec codec, struct error *err)
 {
@@ -72,31 +22,29 @@ static bool apply_size(struct render_settings *settings, const double size[2], e
     return true;
 }
 
-static bool apply_picture(const struct scene *scene, const struct snapshot_params *p, struct given given,
-                          struct render_settings *settings, struct error *err)
+static bool apply_picture(const struct scene *scene, const struct params *p, struct given given, struct render_settings *settings,
+                          struct error *err)
 {
-    if (is_given(given, LIGHTS) && !wire_read_lights(scene, p->lights, settings, err))
+    if (is_given(given, PARAM_LIGHTS) && !wire_read_lights(scene, p->lights, settings, err))
         return false;
-    if (is_given(given, ALGORITHM) && !shadow_parse(p->algorithm, &settings->system, &settings->params, err))
+    if (is_given(given, PARAM_ALGORITHM) && !shadow_parse(p->algorithm, &settings->system, &settings->params, err))
         return false;
-    if (is_given(given, EXPOSURE) && !wire_read_exposure(p->exposure, settings, err))
-        return false;
-    if (is_given(given, AA) && !wire_check_aa(p->aa, err))
+    if (is_given(given, PARAM_EXPOSURE) && !wire_read_exposure(p->exposure, settings, err))
         return false;
     if (p->time > 0)
         return error_set(err, ERROR_USAGE, "time", "time: animations are not built yet; 0 is accepted");
-    if (is_given(given, SHOW))
+    if (is_given(given, PARAM_SHOW))
         settings->show = (enum show)p->show;
-    if (is_given(given, AMBIENT))
+    if (is_given(given, PARAM_AMBIENT))
         settings->ambient = p->ambient;
-    if (is_given(given, TONEMAP))
+    if (is_given(given, PARAM_TONEMAP))
         settings->tonemap = (enum tonemap)p->tonemap;
-    if (is_given(given, AA))
+    if (is_given(given, PARAM_AA))
         settings->aa = (unsigned)p->aa;
     return true;
 }
 
-static bool fill(const struct server *server, const struct scene *scene, const struct snapshot_params *p, struct given given,
+static bool fill(const struct server *server, const struct scene *scene, const struct params *p, struct given given,
                  struct snapshot *snapshot, struct error *err)
 {
     struct common_options options = *server->defaults;
@@ -108,18 +56,18 @@ static bool fill(const struct server *server, const struct scene *scene, const s
         if (!common_options_settings(&options, scene, settings, err))
             return false;
     }
-    snapshot->codec = is_given(given, FORMAT) ? (enum gnmf_codec)p->format : GNMF_PNG;
-    snapshot->quality = is_given(given, QUALITY) ? (int)p->quality : SNAPSHOT_QUALITY_DEFAULT;
+    snapshot->codec = is_given(given, PARAM_FORMAT) ? (enum gnmf_codec)p->format : GNMF_PNG;
+    snapshot->quality = is_given(given, PARAM_QUALITY) ? (int)p->quality : SNAPSHOT_QUALITY_DEFAULT;
     settings->format = snapshot->codec == GNMF_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
-    if (is_given(given, SIZE) && !apply_size(settings, p->size, snapshot->codec, err))
+    if (is_given(given, PARAM_SIZE) && !apply_size(settings, p->size, snapshot->codec, err))
         return false;
-    if (is_given(given, CAMERA) && !wire_read_camera(p->camera, &options.camera, name, err))
+    if (is_given(given, PARAM_CAMERA) && !wire_read_camera(p->camera, &options.camera, name, err))
         return false;
     return camera_choose(scene, &options.camera, (double)settings->width / settings->height, &settings->camera, err) &&
            apply_picture(scene, p, given, settings, err);
 }
 
-static enum outcome start(struct server *server, struct call *call, struct scene_entry *scene, const struct snapshot_params *p,
+static enum outcome start(struct server *server, struct call *call, struct scene_entry *scene, const struct params *p,
                           struct given given, struct error *err)
 {
     struct snapshot *snapshot = calloc(1, sizeof *snapshot);
@@ -145,10 +93,9 @@ static enum outcome start(struct server *server, struct call *call, struct scene
     return OUTCOME_FAILED;
 }
 
-static enum outcome render_snapshot(struct server *server, struct call *call, const void *params, struct given given,
+enum outcome method_render_snapshot(struct server *server, struct call *call, const struct params *p, struct given given,
                                     json_t **result, struct error *err)
 {
-    const struct snapshot_params *p = params;
     struct scene_entry *scene;
     (void)result;
     enum outcome outcome = dispatch_scene(server, call, p->scene, &scene, err);
@@ -158,6 +105,3 @@ static enum outcome render_snapshot(struct server *server, struct call *call, co
     scene_entry_unref(scene);
     return outcome;
 }
-
-const struct method method_render_snapshot = {"render.snapshot", snapshot_members, sizeof(struct snapshot_params), false,
-                                              render_snapshot};

@@ -1,6 +1,4 @@
 #include <math.h>
-#include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,70 +8,6 @@
 #include "wire.h"
 
 #define STREAM_QUALITY_DEFAULT 75
-#define ALGORITHM_TEXT_MAX     400
-
-static const char *const stream_codecs[] = {[GNMF_JPEG] = "jpeg", [GNMF_PNG] = "png", NULL};
-
-struct view_params {
-    uint64_t view;
-    const char *scene;
-    double size[2], dpr;
-    json_t *camera, *lights, *exposure;
-    const char *algorithm;
-    int show, codec, tonemap;
-    uint64_t quality, aa;
-    double fps, ambient;
-    bool pause;
-    uint64_t input_seq, input_time_us;
-};
-
-/* The first member of both tables names the view or the scene; the rest they share. */
-enum {
-    FIRST,
-    SIZE,
-    DPR,
-    CAMERA,
-    LIGHTS,
-    ALGORITHM,
-    SHOW,
-    CODEC,
-    QUALITY,
-    FPS,
-    PAUSE,
-    EXPOSURE,
-    AMBIENT,
-    TONEMAP,
-    AA,
-    INPUT_SEQ,
-    INPUT_TIME
-};
-
-#define AT(field) offsetof(struct view_params, field)
-#define VIEW_MEMBERS                                                                                                             \
-    [SIZE] = {"size", MEMBER_NUMBERS, AT(size), 1, SERVER_STREAM_SIDE_MAX, .count = 2},                                          \
-    [DPR] = {"dpr", MEMBER_NUMBER, AT(dpr), 0.1, 8}, [CAMERA] = {"camera", MEMBER_ANY, AT(camera)},                              \
-    [LIGHTS] = {"lights", MEMBER_ANY, AT(lights)},                                                                               \
-    [ALGORITHM] = {"algorithm", MEMBER_STRING, AT(algorithm), .max = ALGORITHM_TEXT_MAX},                                        \
-    [SHOW] = {"show", MEMBER_CHOICE, AT(show), .choices = show_names},                                                           \
-    [CODEC] = {"codec", MEMBER_CHOICE, AT(codec), .choices = stream_codecs},                                                     \
-    [QUALITY] = {"quality", MEMBER_INTEGER, AT(quality), 1, 100}, [FPS] = {"fps", MEMBER_NUMBER, AT(fps), 0, 1000},              \
-    [PAUSE] = {"pause", MEMBER_BOOL, AT(pause)}, [EXPOSURE] = {"exposure", MEMBER_ANY, AT(exposure)},                            \
-    [AMBIENT] = {"ambient", MEMBER_NUMBER, AT(ambient), 0, 1e6},                                                                 \
-    [TONEMAP] = {"tonemap", MEMBER_CHOICE, AT(tonemap), .choices = tonemap_names}, [AA] = {"aa", MEMBER_INTEGER, AT(aa), 1, 16}, \
-    [INPUT_SEQ] = {"input_seq", MEMBER_INTEGER, AT(input_seq), 0, UINT32_MAX},                                                   \
-    [INPUT_TIME] = {"input_time_us", MEMBER_INTEGER, AT(input_time_us), 0, MEMBER_INTEGER_MAX},                                  \
-    {                                                                                                                            \
-        0                                                                                                                        \
-    }
-
-static const struct member open_members[] = {
-    [FIRST] = {"scene", MEMBER_STRING, AT(scene), .max = SCENE_NAME_MAX - 1},
-    VIEW_MEMBERS,
-};
-static const struct member set_members[] = {
-    [FIRST] = {"view", MEMBER_INTEGER, AT(view), 1, UINT32_MAX, .required = true},
-    VIEW_MEMBERS,
-};
 
 /* Device pixels of the view, checked. */
 static bool apply_size(struct view_record *view, struct error *err)
@@ -89,44 +23,42 @@ static bool apply_size(struct view_record *view, struct error *err)
     return true;
 }
 
-static bool apply_picture(struct view_record *view, const struct view_params *p, struct given given, struct error *err)
+static bool apply_picture(struct view_record *view, const struct params *p, struct given given, struct error *err)
 {
     struct render_settings *settings = &view->state.settings;
-    if (is_given(given, LIGHTS) && !wire_read_lights(view->scene->scene, p->lights, settings, err))
+    if (is_given(given, PARAM_LIGHTS) && !wire_read_lights(view->scene->scene, p->lights, settings, err))
         return false;
-    if (is_given(given, ALGORITHM) && !shadow_parse(p->algorithm, &settings->system, &settings->params, err))
+    if (is_given(given, PARAM_ALGORITHM) && !shadow_parse(p->algorithm, &settings->system, &settings->params, err))
         return false;
-    if (is_given(given, EXPOSURE) && !wire_read_exposure(p->exposure, settings, err))
+    if (is_given(given, PARAM_EXPOSURE) && !wire_read_exposure(p->exposure, settings, err))
         return false;
-    if (is_given(given, AA) && !wire_check_aa(p->aa, err))
-        return false;
-    if (is_given(given, SHOW))
+    if (is_given(given, PARAM_SHOW))
         settings->show = (enum show)p->show;
-    if (is_given(given, AMBIENT))
+    if (is_given(given, PARAM_AMBIENT))
         settings->ambient = p->ambient;
-    if (is_given(given, TONEMAP))
+    if (is_given(given, PARAM_TONEMAP))
         settings->tonemap = (enum tonemap)p->tonemap;
-    if (is_given(given, AA))
+    if (is_given(given, PARAM_AA))
         settings->aa = (unsigned)p->aa;
     return true;
 }
 
-static bool apply(struct view_record *view, const struct view_params *p, struct given given, struct error *err)
+static bool apply(struct view_record *view, const struct params *p, struct given given, struct error *err)
 {
     struct view_state *state = &view->state;
-    if (is_given(given, SIZE))
+    if (is_given(given, PARAM_SIZE))
         memcpy(view->size, p->size, sizeof view->size);
-    if (is_given(given, DPR))
+    if (is_given(given, PARAM_DPR))
         view->dpr = p->dpr;
-    if (is_given(given, CODEC))
+    if (is_given(given, PARAM_CODEC))
         state->codec = (enum gnmf_codec)p->codec;
-    if (is_given(given, QUALITY))
+    if (is_given(given, PARAM_QUALITY))
         state->quality = (int)p->quality;
-    if (is_given(given, FPS))
+    if (is_given(given, PARAM_FPS))
         state->fps_max = p->fps;
-    if (is_given(given, PAUSE))
+    if (is_given(given, PARAM_PAUSE))
         state->paused = p->pause;
-    if (is_given(given, CAMERA) && !wire_read_camera(p->camera, &view->camera, view->camera_name, err))
+    if (is_given(given, PARAM_CAMERA) && !wire_read_camera(p->camera, &view->camera, view->camera_name, err))
         return false;
     return apply_size(view, err) && apply_picture(view, p, given, err) &&
            camera_choose(view->scene->scene, &view->camera, (double)state->settings.width / state->settings.height,
@@ -164,11 +96,14 @@ static json_t *describe_view(const struct view_record *view)
     const struct render_settings *settings = &view->state.settings;
     char algorithm[512];
     shadow_format(settings->system, &settings->params, algorithm, sizeof algorithm);
-    return json_pack("{s:I, s:s, s:[i,i], s:o, s:s, s:s, s:s, s:i, s:o, s:b}", "view", (json_int_t)view->id, "scene",
-                     view->scene->name, "size", (int)settings->width, (int)settings->height, "camera",
-                     wire_camera(view->scene->scene, &settings->camera), "algorithm", algorithm, "show",
-                     show_names[settings->show], "codec", stream_codecs[view->state.codec], "quality", view->state.quality,
-                     "lights", wire_lights(view->scene->scene, settings), "pause", view->state.paused);
+    json_t *exposure = settings->exposure_auto ? json_string("auto") : json_real(settings->exposure_ev);
+    return json_pack("{s:I, s:s, s:[i,i], s:f, s:o, s:s, s:s, s:s, s:i, s:f, s:o, s:b, s:o, s:f, s:s, s:i}", "view",
+                     (json_int_t)view->id, "scene", view->scene->name, "size", (int)settings->width, (int)settings->height, "dpr",
+                     view->dpr, "camera", wire_camera(view->scene->scene, &settings->camera), "algorithm", algorithm, "show",
+                     show_names[settings->show], "codec", codec_names[view->state.codec], "quality", view->state.quality, "fps",
+                     view->state.fps_max, "lights", wire_lights(view->scene->scene, settings), "pause", view->state.paused,
+                     "exposure", exposure, "ambient", settings->ambient, "tonemap", tonemap_names[settings->tonemap], "aa",
+                     (int)settings->aa);
 }
 
 static bool check_room(const struct server *server, const struct session *session, struct error *err)
@@ -182,10 +117,9 @@ static bool check_room(const struct server *server, const struct session *sessio
     return true;
 }
 
-static enum outcome open_view(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                              struct error *err)
+enum outcome method_view_open(struct server *server, struct call *call, const struct params *p, struct given given,
+                              json_t **result, struct error *err)
 {
-    const struct view_params *p = params;
     struct session *session = sessions_find(&server->sessions, call->session);
     struct scene_entry *scene;
     if (!session || !check_room(server, session, err))
@@ -211,10 +145,9 @@ static enum outcome open_view(struct server *server, struct call *call, const vo
     return OUTCOME_DONE;
 }
 
-static enum outcome set_view(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                             struct error *err)
+enum outcome method_view_set(struct server *server, struct call *call, const struct params *p, struct given given,
+                             json_t **result, struct error *err)
 {
-    const struct view_params *p = params;
     struct view_record *view = sessions_find_view(&server->sessions, call->session, (uint32_t)p->view);
     if (!view)
         return OUTCOME_NO_VIEW;
@@ -240,24 +173,9 @@ void view_close(struct server *server, struct view_record *view)
     atomic_fetch_sub(&server->metrics.views, 1);
 }
 
-struct close_params {
-    uint64_t view, frame;
-};
-
-static const struct member close_members[] = {
-    {"view", MEMBER_INTEGER, offsetof(struct close_params, view), 1, UINT32_MAX, .required = true},
-    {0},
-};
-static const struct member ack_members[] = {
-    {"view", MEMBER_INTEGER, offsetof(struct close_params, view), 1, UINT32_MAX, .required = true},
-    {"frame", MEMBER_INTEGER, offsetof(struct close_params, frame), 1, MEMBER_INTEGER_MAX, .required = true},
-    {0},
-};
-
-static enum outcome close_view(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                               struct error *err)
+enum outcome method_view_close(struct server *server, struct call *call, const struct params *p, struct given given,
+                               json_t **result, struct error *err)
 {
-    const struct close_params *p = params;
     struct view_record *view = sessions_find_view(&server->sessions, call->session, (uint32_t)p->view);
     (void)given, (void)result, (void)err;
     if (!view)
@@ -266,10 +184,9 @@ static enum outcome close_view(struct server *server, struct call *call, const v
     return OUTCOME_DONE;
 }
 
-static enum outcome ack_frame(struct server *server, struct call *call, const void *params, struct given given, json_t **result,
-                              struct error *err)
+enum outcome method_frame_ack(struct server *server, struct call *call, const struct params *p, struct given given,
+                              json_t **result, struct error *err)
 {
-    const struct close_params *p = params;
     (void)given, (void)result;
     if (!sessions_find_view(&server->sessions, call->session, (uint32_t)p->view))
         return OUTCOME_NO_VIEW;
@@ -279,8 +196,3 @@ static enum outcome ack_frame(struct server *server, struct call *call, const vo
               "frame: no such frame has been sent; the number in a received frame's header is accepted");
     return OUTCOME_FAILED;
 }
-
-const struct method method_view_open = {"view.open", open_members, sizeof(struct view_params), false, open_view};
-const struct method method_view_set = {"view.set", set_members, sizeof(struct view_params), false, set_view};
-const struct method method_view_close = {"view.close", close_members, sizeof(struct close_params), false, close_view};
-const struct method method_frame_ack = {"frame.ack", ack_members, sizeof(struct close_params), false, ack_frame};

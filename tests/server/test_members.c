@@ -20,13 +20,13 @@ struct all {
 
 static const char *const choices[] = {"red", "green", NULL};
 static const struct member table[] = {
-    {"flag", MEMBER_BOOL, offsetof(struct all, flag)},
-    {"whole", MEMBER_INTEGER, offsetof(struct all, whole), 1, 10, .required = true},
-    {"number", MEMBER_NUMBER, offsetof(struct all, number), -1, 1},
-    {"pair", MEMBER_NUMBERS, offsetof(struct all, pair), 0, 5, .count = 2},
-    {"text", MEMBER_STRING, offsetof(struct all, text), .max = 4},
-    {"choice", MEMBER_CHOICE, offsetof(struct all, choice), .choices = choices},
-    {"any", MEMBER_ANY, offsetof(struct all, any)},
+    {"flag", MEMBER_BOOL, offsetof(struct all, flag), .bit = 0},
+    {"whole", MEMBER_INTEGER, offsetof(struct all, whole), 1, 10, .required = true, .bit = 1},
+    {"number", MEMBER_NUMBER, offsetof(struct all, number), -1, 1, .bit = 2},
+    {"pair", MEMBER_NUMBERS, offsetof(struct all, pair), 0, 5, .count = 2, .bit = 3},
+    {"text", MEMBER_STRING, offsetof(struct all, text), .max = 4, .bit = 4},
+    {"choice", MEMBER_CHOICE, offsetof(struct all, choice), .choices = choices, .bit = 5},
+    {"any", MEMBER_ANY, offsetof(struct all, any), .bit = 6},
     {0},
 };
 
