@@ -12,7 +12,7 @@ struct studio {
     struct renderer *renderer;
 };
 
-/* False, having said why, when there is no device: the caller exits 77. `shader_dir` and `cache_dir`: as in struct renderer_options. */
+/* False, having said why, when there is no device: the caller exits 77. The folders are as in struct renderer_options. */
 bool studio_open(struct studio *studio, const char *shader_dir, const char *cache_dir);
 void studio_close(struct studio *studio);
 

@@ -1,5 +1,5 @@
-/* Errors of every shadow system against ray tracing (reference_point over the same ids), held under bounds.def; and what the hard scenes
- * promise in their comments. */
+/* Errors of every shadow system against ray tracing (reference_point over the same ids), held under bounds.def; and what the
+ * hard scenes promise in their comments. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -57,7 +57,7 @@ static struct shot take(const struct golden *g, double turned)
     return shot;
 }
 
-/* Fraction of pixels that differ by more than `largest` in some channel. `difference`: RGBA, eight times amplified, may be NULL. */
+/* Fraction of pixels that differ by more than `largest` in some channel. `difference`: RGBA, amplified, may be NULL. */
 static double failing(const uint8_t *a, const uint8_t *b, int largest, uint8_t *difference)
 {
     size_t count = 0;

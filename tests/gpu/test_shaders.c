@@ -1,4 +1,5 @@
-/* Shaders from a folder are reloaded when they change, a broken one leaves the old program at work; linked programs are cached on disk. */
+/* Shaders from a folder are reloaded when they change, a broken one leaves the old program at work; linked programs are
+ * cached on disk. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <setjmp.h>
