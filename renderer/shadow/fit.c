@@ -4,18 +4,18 @@
 #include <string.h>
 
 /* One map serves up to this half angle (contract: all casters within 120 degrees). */
-#define HALF_ANGLE_MAX (M_PI / 3)
+#define HALF_ANGLE_MAX   (M_PI / 3)
 /* Room around a fit, so that a vertex on the border is inside after rounding: a fraction of the extent. */
-#define MARGIN 1e-4
+#define MARGIN           1e-4
 /* The same along a directional light, at least: a fraction of the scene's radius. Casters in one plane across the light have no extent there, and
  * depths of single precision over less than their own rounding are all cut off. */
-#define DEPTH_ROOM 1e-5
+#define DEPTH_ROOM       1e-5
 /* Nearest depth of a map against its farthest, when casters come arbitrarily near the light. */
-#define NEAR_RATIO 1e-6
+#define NEAR_RATIO       1e-6
 /* Steps towards a cone around the casters' boxes. Where that is too wide, but not by so much, their vertices decide, in at most so many
  * steps and looks at a vertex, so that a large scene does not hold up a frame. */
-#define CONE_STEPS 12
-#define CONE_NEARLY (1.4 * HALF_ANGLE_MAX)
+#define CONE_STEPS       12
+#define CONE_NEARLY      (1.4 * HALF_ANGLE_MAX)
 #define VERTEX_STEPS_MAX 200
 #define VERTEX_LOOKS_MAX ((size_t)1 << 23)
 
@@ -81,7 +81,8 @@ struct caster_set {
     bool vertices; /* look at the vertices, not at the boxes around them */
 };
 
-static void for_vertices(const struct scene *scene, const struct instance *instance, void (*visit)(void *context, struct dvec3 p), void *context)
+static void for_vertices(const struct scene *scene, const struct instance *instance, void (*visit)(void *context, struct dvec3 p),
+                         void *context)
 {
     const struct mesh *mesh = &scene->meshes[instance->mesh];
     for (size_t v = mesh->first_vertex; v < (size_t)mesh->first_vertex + mesh->vertex_count; v++) {
@@ -105,8 +106,9 @@ static void for_corners(const struct caster_set *set, void (*visit)(void *contex
         for (size_t b = g->first_box[instance->mesh]; b < g->first_box[instance->mesh + 1]; b++) {
             const struct fit_box *box = &g->boxes[b];
             for (int c = 0; c < 8; c++)
-                visit(context, affine_point(&instance->to_scene, dvec3(c & 1 ? box->max[0] : box->min[0], c & 2 ? box->max[1] : box->min[1],
-                                                                      c & 4 ? box->max[2] : box->min[2])));
+                visit(context, affine_point(&instance->to_scene,
+                                            dvec3(c & 1 ? box->max[0] : box->min[0], c & 2 ? box->max[1] : box->min[1],
+                                                  c & 4 ? box->max[2] : box->min[2])));
         }
     }
 }
@@ -200,7 +202,7 @@ static void fit_directional(const struct caster_set *set, bool cube, struct shad
 
 struct direction_sum {
     struct dvec3 eye, sum;
-    double worst;          /* cosine to `axis` */
+    double worst; /* cosine to `axis` */
     struct dvec3 axis, farthest;
 };
 
@@ -279,7 +281,8 @@ static bool fit_one_perspective(const struct caster_set *set, struct shadow_fit 
         struct caster_set exact = *set;
         exact.vertices = true;
         size_t affordable = VERTEX_LOOKS_MAX / (count_vertices(set) + 1);
-        axis = improve_axis(&exact, axis, CONE_STEPS + 1, CONE_STEPS + (affordable < VERTEX_STEPS_MAX ? (int)affordable : VERTEX_STEPS_MAX));
+        axis = improve_axis(&exact, axis, CONE_STEPS + 1,
+                            CONE_STEPS + (affordable < VERTEX_STEPS_MAX ? (int)affordable : VERTEX_STEPS_MAX));
         e = look_at_casters(&exact, v, axis);
     }
     if (e.widest > HALF_ANGLE_MAX)
@@ -332,7 +335,8 @@ static bool face_holds_casters(const struct caster_set *set, struct view *v)
 /* False only if the face lies outside the cone for certain: the cone around a face has a half angle of atan(sqrt(2)). */
 static bool face_meets_cone(const struct light *light, struct dvec3 axis)
 {
-    return light->kind != LIGHT_SPOT || acos(fmax(-1, fmin(1, dvec3_dot(axis, light->direction)))) <= light->outer + atan(M_SQRT2);
+    return light->kind != LIGHT_SPOT ||
+           acos(fmax(-1, fmin(1, dvec3_dot(axis, light->direction)))) <= light->outer + atan(M_SQRT2);
 }
 
 /* The faces overlap by a fraction of a texel, so that no point falls between two of them by rounding. */
@@ -344,7 +348,12 @@ static void fit_cube_faces(const struct caster_set *set, struct shadow_fit *out)
     for (int face = 0; face < 6; face++) {
         struct view *v = &out->maps[out->map_count];
         uint32_t size = v->width;
-        *v = (struct view){.width = size, .height = size, .eye = set->light->position, .left = -edge, .right_edge = edge, .bottom = -edge,
+        *v = (struct view){.width = size,
+                           .height = size,
+                           .eye = set->light->position,
+                           .left = -edge,
+                           .right_edge = edge,
+                           .bottom = -edge,
                            .top = edge};
         look_along(v, dvec3(axes[face][0], axes[face][1], axes[face][2]));
         if (face_meets_cone(set->light, v->forward) && face_holds_casters(set, v))
