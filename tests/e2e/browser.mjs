@@ -1,98 +1,183 @@
-// The viewer in Chromium: a picture, an orbit, another algorithm. Leaves e2e-viewer.png in the build folder.
+// The viewer in Chromium: what a person does with it. Leaves viewer-*.png in the build folder.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { PATIENCE_MS, binaryDir, playwright, serve, sleep } from "./support.mjs";
+import { openBrowser, state, still, until } from "./chromium.mjs";
+import { PATIENCE_MS, binaryDir, serve, sleep } from "./support.mjs";
 
-const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
-if (!existsSync(executablePath)) {
-  console.log(`${executablePath} is missing: skipped`);
-  process.exit(77);
-}
-const server = await serve("--scene", "builtin:box");
-const profile = mkdtempSync(join(tmpdir(), "gnomon-chromium-"));
-const browser = await playwright().chromium.launchPersistentContext(profile, {
-  executablePath,
-  headless: true,
-  viewport: { width: 1000, height: 600 },
-  args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-});
+let server = await serve("--scene", "builtin:box");
+const browser = await openBrowser();
+const { page } = browser;
 const problems = [];
+const control = (name, inner) => page.locator(`[data-control="${name}"] ${inner}`);
+const shot = (name) => page.screenshot({ path: join(binaryDir, `viewer-${name}.png`) });
+const changed = async (before, what) => {
+  await still(page, before.frame);
+  const after = await state(page);
+  assert.notEqual(after.hash, before.hash, what);
+  return after;
+};
+const drag = async (from, by) => {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 10; i++) await page.mouse.move(from.x + (by.x * i) / 10, from.y + (by.y * i) / 10);
+  await page.mouse.up();
+};
+const boxOf = async (locator) => {
+  const { x, y, width, height } = await locator.boundingBox();
+  return { x: x + width / 2, y: y + height / 2 };
+};
+
 try {
-  const page = browser.pages()[0] ?? (await browser.newPage());
   page.setDefaultTimeout(PATIENCE_MS);
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
   await page.goto(server.url);
-  // page.waitForFunction() evaluates strings, which the page's own policy forbids.
-  const until = async (what, condition, argument) => {
-    const end = Date.now() + PATIENCE_MS;
-    while (!(await page.evaluate(condition, argument))) {
-      assert.ok(Date.now() < end, `no ${what} within ${PATIENCE_MS} ms`);
-      await sleep(30);
-    }
-  };
-  const still = (after) => until(`still frame after ${after}`, (frame) => {
-    const { still, frame: now } = document.getElementById("picture").dataset;
-    return still === "true" && Number(now) > frame;
-  }, after);
-  const state = () => page.evaluate(() => {
-    const canvas = document.getElementById("picture");
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-    const colours = new Set();
-    let hash = 0;
-    for (let i = 0; i < data.length; i += 4) {
-      colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-      hash = (Math.imul(hash, 31) + data[i] + 3 * data[i + 1] + 7 * data[i + 2]) | 0;
-    }
-    return { width: canvas.width, height: canvas.height, colours: colours.size, hash, frame: Number(canvas.dataset.frame) };
-  });
 
-  await still(0);
-  const first = await state();
-  assert.deepEqual([first.width, first.height], [1000, 600]);
-  assert.ok(first.colours > 500, `${first.colours} colours`);
+  // Loads, sharp: as many pixels as the stage has.
+  await still(page, 0);
+  let now = await state(page);
+  const stage = await page.locator("#stage").boundingBox();
+  assert.deepEqual([now.width, now.height], [stage.width, stage.height]);
+  assert.ok(now.colours > 500, `${now.colours} colours`);
 
-  // Drag: the picture changes.
-  await page.mouse.move(300, 300);
-  await page.mouse.down();
-  for (let i = 1; i <= 12; i++) await page.mouse.move(300 + 12 * i, 300 - 3 * i);
-  await page.mouse.up();
-  await still(first.frame);
-  const turned = await state();
-  assert.notEqual(turned.hash, first.hash, "dragging changes the picture");
-
-  // Wheel.
+  // Hands: drag, wheel, keys, and home again.
+  const home = now;
+  await drag({ x: 300, y: 300 }, { x: 140, y: -30 });
+  now = await changed(now, "dragging turns the picture");
   await page.mouse.wheel(0, -200);
-  await still(turned.frame);
-  const nearer = await state();
-  assert.notEqual(nearer.hash, turned.hash, "the wheel changes the picture");
+  now = await changed(now, "the wheel zooms");
+  await page.locator("#picture").focus();
+  await page.keyboard.press("ArrowLeft");
+  now = await changed(now, "arrow keys turn the picture");
+  await page.keyboard.press("Shift+ArrowUp");
+  now = await changed(now, "with Shift they pan");
+  await page.keyboard.press("h");
+  now = await changed(now, "h goes home");
+  assert.equal(now.hash, home.hash, "home is where it began");
 
-  // Another algorithm, by the panel made from server.hello.
-  const options = await page.locator("#algorithm option").evaluateAll((all) => all.map((o) => o.value));
-  const current = await page.locator("#algorithm").inputValue();
-  const other = options.find((name) => name !== current);
-  await page.locator("#algorithm").selectOption(other);
-  await still(nearer.frame);
-  const switched = await state();
-  assert.notEqual(switched.hash, nearer.hash, `${current} -> ${other} changes the picture`);
-  await page.locator("#algorithm").selectOption(current);
-  await still(switched.frame);
-  assert.equal((await state()).hash, nearer.hash, "and back again gives the same picture");
+  // Controls made from server.hello: another system and back, a parameter, what is shown.
+  const system = control("algorithm", "select");
+  const titles = await system.locator("option").allTextContents();
+  assert.ok(titles.length >= 2, "several shadow systems");
+  const current = await system.evaluate((select) => select.selectedIndex);
+  await system.selectOption({ index: (current + 1) % titles.length });
+  now = await changed(now, "another system is another picture");
+  await system.selectOption({ index: current });
+  now = await changed(now, "and back");
+  assert.equal(now.hash, home.hash, "the same picture again");
+  assert.match(await control("param-size", "input").getAttribute("title"), /texel|side/i, "help as a tooltip");
+  await control("param-size", "input").fill("64");
+  await control("param-size", "input").press("Enter");
+  now = await changed(now, "a coarse shadow map shows");
 
-  await until("figures", () => /\d/.test(document.getElementById("render").textContent) && /\d/.test(document.getElementById("fps").textContent));
+  // What the server refuses is said in its own words, and the field goes back.
+  await control("param-size", "input").fill("-5");
+  await control("param-size", "input").press("Enter");
+  await page.locator("#message.bad").waitFor();
+  assert.match(await page.locator("#message").textContent(), /size/);
+  await page.locator("#message button").click();
   assert.equal(await page.locator("#message").isHidden(), true);
-  await page.screenshot({ path: join(binaryDir, "e2e-viewer.png") });
+  await page.locator("#picture").focus();
+  await control("show", "select").selectOption("visibility");
+  now = await changed(now, "visibility is another picture");
+  await control("show", "select").selectOption("shaded");
+  now = await changed(now, "shaded again");
+
+  // Lights: one more, moved by its handle and by numbers, removed.
+  const before = now;
+  await page.getByText("Add a light").click();
+  await control("add-spot", "button").click();
+  now = await changed(now, "a light more");
+  const handle = page.locator('.handle.place[data-light="1"]');
+  const from = await boxOf(handle);
+  await drag(from, { x: -120, y: 25 });
+  now = await changed(now, "dragging its handle moves the light");
+  const to = await boxOf(handle);
+  assert.ok(Math.hypot(to.x - from.x + 120, to.y - from.y - 25) < 3, `the handle follows the hand: ${JSON.stringify([from, to])}`);
+  await handle.focus();
+  await page.keyboard.press("ArrowRight");
+  now = await changed(now, "arrow keys move it too");
+  const light = page.locator(".lil-gui[data-light='1']");
+  if (await light.evaluate((folder) => folder.classList.contains("lil-closed"))) await light.locator(".lil-title").click();
+  await control("light-1-intensity", "input").fill("2000");
+  await control("light-1-intensity", "input").press("Enter");
+  now = await changed(now, "a number changes it");
+  await control("light-1-color", "input[type=text]").fill("#ff4020");
+  await control("light-1-color", "input[type=text]").press("Enter");
+  now = await changed(now, "so does a colour");
+  await shot("1280x800");
+  await control("light-1-remove", "button").click();
+  now = await changed(now, "a light less");
+  assert.equal(now.hash, before.hash, "as before it came");
+
+  // A picture to keep.
+  const [download] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Escape").then(() => page.locator("#save").click())]);
+  assert.match(download.suggestedFilename(), /^gnomon-box-sm.*\.png$/);
+
+  // Figures and charts.
+  await until(page, "figures", () => ["render", "encode", "decode", "latency", "rtt"].every((id) => /\d/.test(document.getElementById(id).textContent)));
+  await until(page, "charts", () => document.querySelectorAll(".uplot canvas").length === 2);
+
+  // Help, and its way out.
+  await page.locator("#picture").focus();
+  await page.keyboard.press("?");
+  assert.equal(await page.locator("#help").evaluate((dialog) => dialog.open), true);
+  await shot("help");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator("#help").evaluate((dialog) => dialog.open), false);
+
+  // Dark, light, and as the system has it.
+  const ground = () => page.evaluate(() => [document.documentElement.dataset.theme, getComputedStyle(document.body).backgroundColor]);
+  const dark = await ground();
+  assert.equal(dark[0], "dark");
+  await page.emulateMedia({ colorScheme: "light" });
+  await until(page, "light colours", () => document.documentElement.dataset.theme === "light");
+  assert.notEqual((await ground())[1], dark[1]);
+  await page.locator("#theme").click();
+  assert.equal((await ground())[0], "dark", "the switch wins over the system");
+  await page.locator("#theme").click();
+  assert.equal((await ground())[0], "light");
+  await shot("light");
+
+  // Narrow windows: nothing sticks out, the picture fits what it is given.
+  for (const [width, height] of [[700, 800], [700, 500], [390, 844]]) {
+    await page.setViewportSize({ width, height });
+    await until(page, `a picture for ${width} x ${height}`, () => {
+      const canvas = document.getElementById("picture");
+      return canvas.width === canvas.clientWidth && canvas.height === canvas.clientHeight && canvas.dataset.still === "true";
+    });
+    const layout = await page.evaluate(() => {
+      const rect = (id) => document.getElementById(id).getBoundingClientRect();
+      const inside = (r) => r.left >= -1 && r.top >= -1 && r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1;
+      return { scrolls: document.documentElement.scrollWidth > innerWidth, inside: ["stage", "side", "tools", "toggle"].map((id) => inside(rect(id))), picture: rect("picture").width * rect("picture").height };
+    });
+    assert.deepEqual([layout.scrolls, layout.inside], [false, [true, true, true, true]], `${width} x ${height}`);
+    assert.ok(layout.picture > 0.4 * width * height, `${width} x ${height}: the picture keeps ${layout.picture} pixels`);
+    await shot(`${width}x${height}`);
+  }
+  await page.keyboard.press("p");
+  await until(page, "the panel's going", () => document.getElementById("side").offsetParent === null);
+  await page.keyboard.press("p");
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await until(page, "the old size", (width) => document.getElementById("picture").width === width, stage.width);
   assert.deepEqual(problems, []);
 
-  // The server goes: the page says so.
+  // The server goes: the page says so. It comes back on the same port: so does the view, as it was.
+  await still(page, 0);
+  await drag({ x: 300, y: 300 }, { x: -60, y: 10 });
+  await sleep(500);
+  await still(page, 0);
+  const lost = await state(page);
   await server.stop();
-  await until("word of the lost connection", () => /Connection lost/.test(document.getElementById("message").textContent));
+  await until(page, "word of the lost connection", () => /Connection lost/.test(document.getElementById("status").textContent));
+  assert.equal((await state(page)).hash, lost.hash, "the last picture stays");
+  server = await serve("--listen", new URL(server.url).host, "--scene", "builtin:ball");
+  await until(page, "the connection", () => document.getElementById("status").dataset.state === "open");
+  await still(page, 0);
+  assert.equal((await state(page)).hash, lost.hash, "the same scene, camera and system as before");
 } finally {
   await browser.close();
   await server.stop().catch(() => undefined);
-  rmSync(profile, { recursive: true, force: true });
 }
 console.log("all good");
 process.exit(0);

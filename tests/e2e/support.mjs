@@ -20,7 +20,8 @@ export function within(promise, what, ms = PATIENCE_MS) {
 }
 
 export async function serve(...args) {
-  const child = spawn(process.env.GNOMON, ["serve", "--listen", "127.0.0.1:0", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+  const listen = args.includes("--listen") ? [] : ["--listen", "127.0.0.1:0"];
+  const child = spawn(process.env.GNOMON, ["serve", ...listen, ...args], { stdio: ["ignore", "pipe", "pipe"] });
   process.on("exit", () => child.kill("SIGKILL")); // a test that fails leaves nothing running
   let out = "", err = "";
   child.stderr.on("data", (text) => (err += text));

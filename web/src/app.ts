@@ -1,166 +1,396 @@
-// The page: one canvas, one view, a panel, figures.
-import { Client, type Frame, type Hello, RpcError, type ViewInfo, type ViewSettings, type ViewStats, nowUs } from "./client.js";
+// The page: one canvas, one view, its lights, a panel, figures.
+import { Charts } from "./charts.js";
+import {
+  type Client, type Frame, type Hello, type Light, type LightKind, type LightsResult, type LookAt, nowUs, RpcError, type SceneInfo, type ViewInfo,
+  type ViewSettings,
+} from "./client.js";
+import { Connection } from "./connection.js";
+import { Figures } from "./figures.js";
 import { listen } from "./gestures.js";
+import { Handles, type Space } from "./handles.js";
+import { fillHelp } from "./help.js";
+import { type Held, listenKeys, type Pressed } from "./keys.js";
+import { asKind, newLight } from "./lights.js";
+import { readLink, writeLink } from "./link.js";
+import { Messages } from "./messages.js";
 import { Orbit } from "./orbit.js";
-import { Panel } from "./panel.js";
+import { Panel, type PanelEvents, type Snapshot } from "./panel.js";
+import { Picture } from "./picture.js";
+import { saveFrame } from "./save.js";
+import { Steering } from "./steering.js";
+import { ThemeSwitch } from "./theme.js";
+import { Timings } from "./timings.js";
+import { add, length, scale } from "./vectors.js";
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
-const canvas = byId<HTMLCanvasElement>("picture");
-const context = canvas.getContext("2d", { alpha: false })!;
-const RETRY_MS = [250, 500, 1000, 2000, 5000];
 
 const url = new URL("ws", location.href);
 url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
 url.search = location.search; // ?token=
+url.hash = "";
+
+const KEY_TURN = 0.35; // picture heights a second
+const KEY_PAN = 0.5;
+const KEY_ZOOM = 2.2; // factor a second
+const COMPLAINT_CODES = [-32602, -32000, -32001]; // what an old view asks for, and this server does not have
 
 class App {
-  private client: Client | undefined;
+  private hello: Hello | undefined;
   private view: ViewInfo | undefined;
   private orbit: Orbit | undefined;
-  private attempts = 0;
-  private drawn = 0;
-  private wanted: ViewSettings = {}; // what to ask for again after a reconnect
-  private latencyMs = 0;
-  private frame: Frame | undefined;
-  private stats: ViewStats | undefined;
+  private panel: Panel | undefined;
+  private lights: Light[] = [];
+  private space: Space = { center: [0, 0, 0], radius: 1 };
+  private wanted: ViewSettings = readLink(); // what to ask for again after a reconnect
+  private sharpness = 1;
+  private ticking = false;
+  private dragging = false; // a light: the handle leads, answers follow
+  private refused: RpcError | undefined;
+  private readonly timings = new Timings();
+  private readonly picture = new Picture(byId<HTMLCanvasElement>("picture"), () => this.resize());
+  private readonly messages = new Messages(byId("message"), byId("status"), byId("retry"));
+  private readonly charts = new Charts(byId("frame-chart"), byId("pass-chart"), this.timings);
+  private readonly figures = new Figures(this.timings);
+  private readonly handles = new Handles(byId("handles"), {
+    move: (index, change, timeUs) => this.dragLight(index, change, timeUs),
+    end: (index) => void this.changeLight(index, {}),
+    remove: (index) => void this.removeLight(index),
+  });
+  private readonly steering = new Steering(
+    {
+      steer: (settings, timeUs) => this.client!.steer(this.view!.view, settings, timeUs),
+      steerLight: (index, light, timeUs) => this.client!.steerLight(this.view!.view, index, light, timeUs),
+    },
+    () => this.orbit?.camera,
+  );
+  private readonly connection: Connection;
 
-  start(): void {
-    listen(canvas, {
-      turn: (dx, dy) => this.steer((orbit) => orbit.turn(dx, dy)),
-      pan: (dx, dy) => this.steer((orbit) => orbit.pan(dx, dy)),
-      zoom: (factor) => this.steer((orbit) => orbit.zoom(factor)),
+  constructor() {
+    const theme = new ThemeSwitch(byId("theme"), () => this.charts.restyle());
+    listen(this.picture.canvas, {
+      turn: (dx, dy, timeUs) => this.steer(timeUs, (orbit) => orbit.turn(dx, dy)),
+      pan: (dx, dy, timeUs) => this.steer(timeUs, (orbit) => orbit.pan(dx, dy)),
+      zoom: (factor, x, y, timeUs) => this.steer(timeUs, (orbit) => orbit.zoom(factor, x, y)),
     });
-    new ResizeObserver(() => this.resize()).observe(canvas);
-    byId("toggle").addEventListener("click", () => document.body.classList.toggle("bare"));
-    byId("home").addEventListener("click", () => this.openView({ ...this.wanted, camera: undefined }));
-    document.addEventListener("visibilitychange", () => {
-      if (this.view) this.client?.steer(this.view.view, { pause: document.hidden });
-    });
-    this.connect();
-  }
-
-  private connect(): void {
-    this.client = new Client(url.href, {
+    this.listenKeys(theme);
+    this.listenPage();
+    this.connection = new Connection(url.href, {
       hello: (hello) => void this.greet(hello),
       frame: (frame) => this.draw(frame),
       stats: (stats) => {
-        this.stats = stats;
-        this.showFigures();
+        this.charts.add(stats);
+        this.figures.stats = stats;
       },
-      viewError: (error) => this.tell(error.message, true),
-      closed: (code, reason) => this.retry(code, reason),
+      viewError: (error) => this.messages.error(new RpcError(error.code, error.message, error.data ?? undefined)),
+      notified: (method, params) => this.notified(method, params),
+      status: (status) => {
+        this.messages.connection(status);
+        if (status.state === "lost") this.view = undefined;
+      },
     });
   }
 
-  private retry(code: number, reason: string): void {
-    this.view = undefined;
-    const wait = RETRY_MS[Math.min(this.attempts++, RETRY_MS.length - 1)]!;
-    this.tell(`Connection lost${reason ? `: ${reason}` : code === 1006 ? "" : ` (${code})`}. Trying again.`, true);
-    setTimeout(() => this.connect(), wait);
+  private get client() {
+    return this.connection.client;
+  }
+
+  private listenKeys(theme: ThemeSwitch): void {
+    const turn = (dx: number, dy: number) => (s: number) => this.steer(nowUs(), (o) => o.turn(dx * s * KEY_TURN, dy * s * KEY_TURN));
+    const pan = (dx: number, dy: number) => (s: number) => this.steer(nowUs(), (o) => o.pan(dx * s * KEY_PAN, dy * s * KEY_PAN));
+    const zoom = (way: number) => (s: number) => this.steer(nowUs(), (o) => o.zoom(KEY_ZOOM ** (way * s)));
+    const held: Held[] = [
+      { keys: ["ArrowLeft"], label: "←  →", help: "orbit around", move: turn(-1, 0) },
+      { keys: ["ArrowRight"], label: "", help: "", move: turn(1, 0) },
+      { keys: ["ArrowUp"], label: "↑  ↓", help: "orbit over and under", move: turn(0, -1) },
+      { keys: ["ArrowDown"], label: "", help: "", move: turn(0, 1) },
+      { keys: ["Shift+ArrowLeft", "a"], label: "a  d  Shift ←  →", help: "pan sideways", move: pan(1, 0) },
+      { keys: ["Shift+ArrowRight", "d"], label: "", help: "", move: pan(-1, 0) },
+      { keys: ["Shift+ArrowUp", "w"], label: "w  s  Shift ↑  ↓", help: "pan up and down", move: pan(0, 1) },
+      { keys: ["Shift+ArrowDown", "s"], label: "", help: "", move: pan(0, -1) },
+      { keys: ["+", "=", "PageUp"], label: "+  −  Page up  Page down", help: "zoom", move: zoom(-1) },
+      { keys: ["-", "_", "PageDown"], label: "", help: "", move: zoom(1) },
+    ];
+    const pressed: Pressed[] = [
+      { keys: ["Home", "h"], label: "Home  h", help: "back to the scene's camera", act: () => this.home() },
+      { keys: ["]"], label: "]  [", help: "next, previous shadow system", act: () => this.panel?.nextAlgorithm(1) },
+      { keys: ["["], label: "", help: "", act: () => this.panel?.nextAlgorithm(-1) },
+      { keys: ["v"], label: "v", help: "what the picture shows: shaded, visibility, depth …", act: () => this.panel?.nextShow() },
+      { keys: ["l"], label: "l", help: "light handles on and off", act: () => this.toggleHandles() },
+      { keys: ["p"], label: "p", help: "panel on and off", act: () => this.togglePanel() },
+      { keys: ["t"], label: "t", help: "dark, light, or as the system has it", act: () => theme.next() },
+      { keys: ["f"], label: "f", help: "full screen", act: () => this.toggleFullscreen() },
+      { keys: ["c"], label: "c", help: "save what you see as a picture", act: () => this.saveView() },
+      { keys: ["?"], label: "?", help: "this help; Escape closes it", act: () => byId<HTMLDialogElement>("help").showModal() },
+    ];
+    listenKeys(held, pressed);
+    fillHelp(byId<HTMLDialogElement>("help"), held.filter((h) => h.label), pressed.filter((p) => p.label));
+  }
+
+  private listenPage(): void {
+    const click = (id: string, act: () => void): void => byId(id).addEventListener("click", act);
+    click("toggle", () => this.togglePanel());
+    click("home", () => this.home());
+    click("handles-toggle", () => this.toggleHandles());
+    click("save", () => this.saveView());
+    click("fullscreen", () => this.toggleFullscreen());
+    click("show-help", () => byId<HTMLDialogElement>("help").showModal());
+    click("close-help", () => byId<HTMLDialogElement>("help").close());
+    click("retry", () => this.connection.retry());
+    window.addEventListener("online", () => this.connection.retry());
+    document.addEventListener("visibilitychange", () => {
+      if (this.view) this.steering.view({ pause: document.hidden }, nowUs());
+      if (!document.hidden) this.connection.retry();
+    });
   }
 
   private async greet(hello: Hello): Promise<void> {
-    this.attempts = 0;
+    this.hello = hello;
+    this.view = undefined;
     byId("version").textContent = hello.version;
     byId("device").textContent = hello.capabilities.device;
-    if (!(await this.openView(this.wanted)) || !this.view) return;
-    new Panel(
-      byId("panel"),
-      hello,
-      {
-        scene: (scene) => void this.openView({ ...this.wanted, scene, camera: undefined }),
-        algorithm: (algorithm) => void this.change({ algorithm }),
-        show: (show) => void this.change({ show }),
-      },
-      this.view,
-    );
-  }
-
-  private size(): ViewSettings {
-    return { size: [Math.max(1, canvas.clientWidth), Math.max(1, canvas.clientHeight)], dpr: Math.min(4, window.devicePixelRatio || 1) };
+    if (await this.openView(this.wanted)) return;
+    // A server that was replaced may not know what the old one did.
+    if (this.refused && COMPLAINT_CODES.includes(this.refused.code)) {
+      const { refused } = this;
+      if (await this.openView({})) this.messages.error(refused);
+    }
   }
 
   private async openView(settings: ViewSettings): Promise<boolean> {
-    const old = this.view;
-    this.tell(settings.scene ? `Loading ${settings.scene} …` : "Loading …");
+    const { client, view: old } = this;
+    if (!client || !this.hello) return false;
+    this.refused = undefined;
+    this.messages.note(settings.scene ? `Loading ${settings.scene} …` : "Loading …", true);
     try {
-      const opened = await this.client!.openView({ ...settings, ...this.size() });
-      if (old && this.view === old) this.client!.notify("view.close", { view: old.view });
-      this.view = opened;
-      this.orbit = new Orbit(opened.camera);
-      this.wanted = { ...settings, scene: opened.scene };
-      this.drawn = 0;
-      this.tell("");
+      this.steering.flush();
+      const opened = await client.openView({ ...settings, pause: document.hidden, ...this.size() });
+      if (old) client.notify("view.close", { view: old.view });
+      this.take(opened, settings);
+      this.messages.clear();
+      void this.describe(opened.scene);
       return true;
     } catch (error) {
-      this.tell(error instanceof RpcError ? error.message : String(error), true);
+      if (this.client !== client) return false; // the connection went: that is said elsewhere
+      this.refused = error instanceof RpcError ? error : undefined;
+      this.messages.error(error);
+      if (old) this.panel?.sync(old);
       return false;
     }
   }
 
-  private async change(settings: ViewSettings): Promise<void> {
-    if (!this.view) return;
+  private take(opened: ViewInfo, settings: ViewSettings): void {
+    const fresh = !this.panel || this.hello !== this.panel.hello;
+    this.view = opened;
+    this.orbit = new Orbit(opened.camera);
+    this.wanted = { ...settings, scene: opened.scene };
+    this.picture.restart();
+    this.steering.restart();
+    this.steering.note(0);
+    if (fresh) this.panel = new Panel(byId("panel"), this.hello!, this.panelEvents(), opened);
+    else this.panel?.sync(opened);
+    this.showLights(opened.lights);
+    writeLink(this.wanted);
+  }
+
+  private async describe(scene: string): Promise<void> {
     try {
-      await this.client!.setView(this.view.view, settings);
-      Object.assign(this.wanted, settings);
-      this.tell("");
+      const info = await this.client!.request<SceneInfo>("scene.describe", { scene });
+      if (this.view?.scene !== scene) return;
+      const { bounds } = info;
+      if (bounds) this.space = { center: scale(add(bounds.min, bounds.max), 0.5), radius: length(add(bounds.max, bounds.min, -1)) / 2 || 1 };
+      this.panel?.describeScene(info, this.wanted.camera);
+      this.showLights(this.lights);
     } catch (error) {
-      this.tell(error instanceof RpcError ? error.message : String(error), true);
+      if (this.view) this.messages.error(error);
     }
   }
 
-  private steer(move: (orbit: Orbit) => void): void {
-    if (!this.view || !this.orbit) return;
-    move(this.orbit);
-    this.wanted.camera = this.orbit.camera;
-    this.client!.steer(this.view.view, { camera: this.orbit.camera });
+  private panelEvents(): PanelEvents {
+    return {
+      scene: (scene) => void this.openView({ ...this.wanted, scene, camera: undefined, lights: undefined }),
+      camera: (camera) => void this.change({ camera }),
+      set: (settings) => void this.change(settings),
+      sharpness: (scale) => {
+        this.sharpness = scale;
+        this.resize();
+      },
+      snapshot: (settings) => void this.save(settings),
+      lights: {
+        add: (kind) => void this.addLight(kind),
+        change: (index, change) => void this.changeLight(index, change),
+        become: (index, kind) => void this.changeLight(index, asKind(this.lights[index]!, kind, this.space)),
+        remove: (index) => void this.removeLight(index),
+      },
+    };
+  }
+
+  private size(): ViewSettings {
+    return this.picture.size(this.hello?.limits ?? {}, this.sharpness);
   }
 
   private resize(): void {
-    if (this.view) this.client!.steer(this.view.view, this.size());
+    if (this.view) this.steering.view(this.size(), nowUs());
+    this.handles.place(this.picture.camera);
+  }
+
+  private home(): void {
+    void this.change({ camera: this.panel?.homeCamera ?? "auto" });
+  }
+
+  // One after another, so that what was typed last is what stays.
+  private async change(settings: ViewSettings): Promise<void> {
+    const { client, view } = this;
+    if (!client || !view) return;
+    this.steering.flush();
+    const moves = settings.camera !== undefined;
+    try {
+      const asked = client.setView(view.view, settings);
+      if (!moves) this.steering.note(client.inputSeq);
+      const now = await asked;
+      if (this.view?.view !== view.view) return;
+      this.view = now;
+      Object.assign(this.wanted, settings);
+      if (moves) this.jump(now.camera, settings.camera!);
+      this.panel?.sync(now);
+      this.messages.clear();
+      writeLink(this.wanted);
+    } catch (error) {
+      if (this.client !== client) return;
+      this.messages.error(error);
+      this.panel?.sync(this.view ?? view);
+    }
+  }
+
+  private jump(camera: LookAt, choice: LookAt | string | number): void {
+    this.orbit = new Orbit(camera);
+    this.steering.restart();
+    this.steering.note(0);
+    if (typeof choice !== "object") this.panel?.cameraIs(choice);
+  }
+
+  private steer(timeUs: number, move: (orbit: Orbit) => void): void {
+    if (!this.view || !this.orbit) return;
+    move(this.orbit);
+    this.wanted.camera = this.orbit.camera;
+    this.steering.view({ camera: this.orbit.camera }, timeUs);
+    this.panel?.cameraIs(undefined);
+    this.tickSoon();
+  }
+
+  // While frames are late, the last one follows the hand.
+  private tickSoon(): void {
+    if (this.ticking) return;
+    this.ticking = true;
+    requestAnimationFrame(() => {
+      this.ticking = false;
+      const waitingMs = this.steering.waitingMs;
+      if (waitingMs === 0 || !this.orbit || !this.view) return;
+      if (this.picture.bend(this.orbit.camera, waitingMs)) this.handles.place(this.orbit.camera);
+      this.tickSoon();
+    });
   }
 
   private async draw(frame: Frame): Promise<void> {
-    if (frame.view !== this.view?.view && this.view) return;
-    const picture = await createImageBitmap(new Blob([frame.payload as BlobPart], { type: `image/${frame.codec}` }));
-    if (frame.frame > this.drawn) {
-      this.drawn = frame.frame;
-      this.frame = frame;
-      if (canvas.width !== picture.width) canvas.width = picture.width;
-      if (canvas.height !== picture.height) canvas.height = picture.height;
-      context.drawImage(picture, 0, 0);
-      canvas.dataset["frame"] = String(frame.frame);
-      canvas.dataset["still"] = String((frame.flags & 2) !== 0);
-      // A still frame answers no input: its age says nothing.
-      if (frame.inputTimeUs && !(frame.flags & 2)) requestAnimationFrame(() => (this.latencyMs = (nowUs() - frame.inputTimeUs) / 1000));
-      this.showFigures();
-    }
-    picture.close();
+    if (frame.kind !== 0 || frame.view !== this.view?.view) return;
+    const timing = await this.picture.show(frame, () => this.steering.answer(frame.inputSeq));
+    if (!timing) return;
+    this.timings.add(timing);
+    this.picture.canvas.dispatchEvent(new CustomEvent("gnomon:frame", { detail: timing })); // for whoever measures
+    if (!this.dragging) this.handles.place(this.picture.camera);
   }
 
-  private showFigures(): void {
-    const set = (id: string, text: string): void => void (byId(id).textContent = text);
-    const ms = (us: number): string => `${(us / 1000).toFixed(1)} ms`;
-    if (this.frame) {
-      set("size", `${this.frame.width} × ${this.frame.height}`);
-      set("render", ms(this.frame.renderUs));
-      set("encode", ms(this.frame.encodeUs));
-      set("bytes", `${(this.frame.payload.length / 1024).toFixed(0)} KiB`);
-      set("latency", this.latencyMs ? `${this.latencyMs.toFixed(0)} ms` : "–");
-    }
-    if (this.stats) {
-      set("fps", this.stats.fps.toFixed(0));
-      set("rtt", `${this.stats.rtt_ms.toFixed(1)} ms`);
-      set("shadow", `${(this.stats.shadow_bytes / 1048576).toFixed(1)} MiB`);
+  private notified(method: string, params: unknown): void {
+    if (method !== "$/progress") return;
+    const { message, text } = params as { message?: string; text?: string };
+    if (message ?? text) this.messages.note((message ?? text)!, true);
+  }
+
+  private showLights(lights: Light[]): void {
+    this.lights = lights;
+    this.panel?.lights.set(lights, this.space.radius);
+    this.handles.set(lights, this.space);
+  }
+
+  private dragLight(index: number, change: Partial<Light>, timeUs: number): void {
+    if (!this.view) return;
+    this.dragging = true;
+    this.steering.light(index, change, timeUs);
+    this.panel?.lights.refresh(index, this.lights[index]!);
+  }
+
+  private async askLights(ask: (client: Client, view: number) => Promise<LightsResult>): Promise<void> {
+    const { client, view } = this;
+    if (!client || !view) return;
+    this.steering.flush();
+    try {
+      const asked = ask(client, view.view);
+      this.steering.note(client.inputSeq);
+      const { lights } = await asked;
+      if (this.view?.view !== view.view) return;
+      this.wanted.lights = lights.map(withoutName);
+      this.messages.clear();
+      if (!this.dragging) this.showLights(lights);
+    } catch (error) {
+      if (this.client !== client) return;
+      this.messages.error(error);
+      this.showLights(this.lights);
     }
   }
 
-  private tell(text: string, bad = false): void {
-    const message = byId("message");
-    message.textContent = text;
-    message.hidden = text === "";
-    message.classList.toggle("bad", bad);
+  private changeLight(index: number, change: Partial<Light>): Promise<void> {
+    this.dragging = false;
+    return this.askLights((client, view) => client.setLight(view, index, change));
+  }
+
+  private addLight(kind: LightKind): Promise<void> {
+    const { width, height } = this.picture.canvas;
+    const light = newLight(kind, this.orbit!.camera, width / height, this.space, this.lights);
+    return this.askLights((client, view) => client.addLight(view, light));
+  }
+
+  private removeLight(index: number): Promise<void> {
+    return this.askLights((client, view) => client.removeLight(view, index));
+  }
+
+  private saveView(): void {
+    const { width, height } = this.picture.canvas;
+    void this.save({ width, height, format: "png", aa: 4 });
+  }
+
+  private async save({ width, height, format, aa }: Snapshot): Promise<void> {
+    const { client, view, wanted } = this;
+    if (!client || !view) return;
+    this.messages.note(`Rendering ${width} × ${height} …`, true);
+    const { scene, algorithm, show, exposure, ambient, tonemap } = { ...wanted, algorithm: view.algorithm };
+    const chosen = { scene, algorithm, show, exposure, ambient, tonemap, camera: wanted.camera ?? this.orbit!.camera, lights: this.lights.map(withoutName) };
+    try {
+      const frame = await client.snapshot({ ...chosen, size: [Math.round(width), Math.round(height)], format, aa });
+      const name = saveFrame(frame, [scene ?? "view", algorithm]);
+      this.messages.note(`Saved ${name}: ${frame.width} × ${frame.height}, ${(frame.payload.length / 1024).toFixed(0)} KiB`);
+    } catch (error) {
+      this.messages.error(error);
+    }
+  }
+
+  private toggleHandles(): void {
+    const off = byId("handles").classList.toggle("off");
+    byId("handles-toggle").setAttribute("aria-pressed", String(!off));
+  }
+
+  private togglePanel(): void {
+    const bare = document.body.classList.toggle("bare");
+    byId("toggle").setAttribute("aria-expanded", String(!bare));
+  }
+
+  private toggleFullscreen(): void {
+    const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+    done.catch((error: unknown) => this.messages.error(error));
   }
 }
 
-new App().start();
+// Names come from the scene; the wire takes none back.
+function withoutName({ name: _, ...light }: Light): Light {
+  return light;
+}
+
+new App();

@@ -1,6 +1,6 @@
 // The connection: requests, notifications, frames and their acknowledgement. Knows nothing of pages; scripts may import it.
 import { type Frame, parseFrame } from "./frame.js";
-import type { Hello, ViewInfo, ViewSettings, ViewStats } from "./protocol.js";
+import type { Hello, Light, LightsResult, SnapshotSettings, ViewInfo, ViewSettings, ViewStats } from "./protocol.js";
 
 export * from "./frame.js";
 export type * from "./protocol.js";
@@ -20,11 +20,13 @@ export interface ClientEvents {
   // The frame counts as shown, and its credit returns, when the promise settles.
   frame?(frame: Frame): void | Promise<void>;
   stats?(stats: ViewStats): void;
-  viewError?(error: { view: number; code: number; message: string }): void;
+  viewError?(error: { view: number; code: number; message: string; data?: { field?: string } | null }): void;
+  // Any notification that has no callback of its own.
+  notified?(method: string, params: unknown): void;
   closed?(code: number, reason: string): void;
 }
 
-type SocketClass = new (url: string, protocols: string) => WebSocket;
+export type SocketClass = new (url: string, protocols: string) => WebSocket;
 interface Waiting {
   resolve(value: unknown): void;
   reject(error: Error): void;
@@ -33,11 +35,17 @@ interface Waiting {
 // Microseconds of this client's own clock, as sent with input and echoed by frames.
 export const nowUs = (): number => Math.round((performance.timeOrigin + performance.now()) * 1000);
 
+const SNAPSHOT_KIND = 1;
+
 export class Client {
   private readonly socket: WebSocket;
   private readonly waiting = new Map<number, Waiting>();
   private lastId = 0;
   private lastInput = 0;
+  private lastSnapshot = 0;
+  private readonly snapshots = new Map<number, Frame>();
+  private heardMs = Infinity;
+  private gone = false;
 
   constructor(
     url: string,
@@ -55,8 +63,19 @@ export class Client {
     this.socket.close(1000);
   }
 
+  // As if the other end had closed, for one that no longer answers: a close of the socket would wait for it.
+  abandon(reason: string): void {
+    this.socket.close(4000);
+    this.end(4000, reason);
+  }
+
   get open(): boolean {
-    return this.socket.readyState === 1;
+    return this.socket.readyState === 1 && !this.gone;
+  }
+
+  // Since the last message, once a view's statistics have come: they go on coming each second. 0 before.
+  get silentMs(): number {
+    return Math.max(0, performance.now() - this.heardMs);
   }
 
   request<T>(method: string, params: object = {}): Promise<T> {
@@ -79,37 +98,75 @@ export class Client {
     return this.request<ViewInfo>("view.open", { ...settings, ...this.input() });
   }
 
-  // For what a person does with a mouse: sent at once, unanswered, time-stamped.
-  steer(view: number, settings: ViewSettings): void {
-    this.notify("view.set", { view, ...settings, ...this.input() });
-  }
-
   setView(view: number, settings: ViewSettings): Promise<ViewInfo> {
     return this.request<ViewInfo>("view.set", { view, ...settings, ...this.input() });
+  }
+
+  // For what a person does with a mouse: sent at once, unanswered, with the time of the event. Returns the number that frames echo.
+  steer(view: number, settings: ViewSettings, timeUs = nowUs()): number {
+    this.notify("view.set", { view, ...settings, ...this.input(timeUs) });
+    return this.lastInput;
+  }
+
+  steerLight(view: number, index: number, light: Partial<Light>, timeUs = nowUs()): number {
+    this.notify("light.set", { view, index, light, ...this.input(timeUs) });
+    return this.lastInput;
+  }
+
+  setLight(view: number, index: number, light: Partial<Light>): Promise<LightsResult> {
+    return this.request<LightsResult>("light.set", { view, index, light, ...this.input() });
+  }
+
+  addLight(view: number, light: Light): Promise<LightsResult> {
+    return this.request<LightsResult>("light.add", { view, light, ...this.input() });
+  }
+
+  removeLight(view: number, index: number): Promise<LightsResult> {
+    return this.request<LightsResult>("light.remove", { view, index, ...this.input() });
+  }
+
+  // The newest input sent, so far.
+  get inputSeq(): number {
+    return this.lastInput;
+  }
+
+  // The picture comes before the answer.
+  async snapshot(settings: SnapshotSettings): Promise<Frame> {
+    const requestId = ++this.lastSnapshot;
+    await this.request("render.snapshot", { ...settings, request_id: requestId });
+    const frame = this.snapshots.get(requestId);
+    this.snapshots.delete(requestId);
+    if (!frame) throw new RpcError(0, "the server answered without sending the picture");
+    return frame;
   }
 
   ack(frame: Frame): void {
     this.notify("frame.ack", { view: frame.view, frame: frame.frame });
   }
 
-  private input(): { input_seq: number; input_time_us: number } {
+  private input(timeUs = nowUs()): { input_seq: number; input_time_us: number } {
     this.lastInput = (this.lastInput + 1) >>> 0;
-    return { input_seq: this.lastInput, input_time_us: nowUs() };
+    return { input_seq: this.lastInput, input_time_us: timeUs };
   }
 
   private receive(data: string | ArrayBuffer): void {
+    if (this.heardMs !== Infinity) this.heardMs = performance.now();
     if (typeof data !== "string") {
-      void this.show(parseFrame(data));
+      void this.show(parseFrame(data, nowUs()));
       return;
     }
     const message = JSON.parse(data);
     if (message.method === undefined) this.settle(message);
     else if (message.method === "server.hello") this.events.hello?.(message.params);
-    else if (message.method === "view.stats") this.events.stats?.(message.params);
-    else if (message.method === "view.error") this.events.viewError?.(message.params);
+    else if (message.method === "view.stats") {
+      this.heardMs = performance.now();
+      this.events.stats?.(message.params);
+    } else if (message.method === "view.error") this.events.viewError?.(message.params);
+    else this.events.notified?.(message.method, message.params);
   }
 
   private async show(frame: Frame): Promise<void> {
+    if (frame.kind === SNAPSHOT_KIND && frame.requestId > 0 && frame.requestId <= this.lastSnapshot) this.snapshots.set(frame.requestId, frame);
     try {
       await this.events.frame?.(frame);
     } finally {
@@ -125,6 +182,8 @@ export class Client {
   }
 
   private end(code: number, reason: string): void {
+    if (this.gone) return;
+    this.gone = true;
     for (const waiting of this.waiting.values()) waiting.reject(new RpcError(0, "the connection closed"));
     this.waiting.clear();
     this.events.closed?.(code, reason);

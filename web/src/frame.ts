@@ -21,9 +21,10 @@ export interface Frame {
   encodeUs: number;
   requestId: number;
   payload: Uint8Array;
+  receivedUs: number; // on this client's clock
 }
 
-export function parseFrame(data: ArrayBuffer): Frame {
+export function parseFrame(data: ArrayBuffer, receivedUs = 0): Frame {
   if (data.byteLength < HEADER_SIZE) throw new Error(`a frame of ${data.byteLength} bytes is shorter than its header`);
   const v = new DataView(data);
   const magic = String.fromCharCode(v.getUint8(0), v.getUint8(1), v.getUint8(2), v.getUint8(3));
@@ -43,5 +44,6 @@ export function parseFrame(data: ArrayBuffer): Frame {
     encodeUs: v.getUint32(44, true),
     requestId: v.getUint32(48, true),
     payload: new Uint8Array(data, v.getUint8(5)),
+    receivedUs,
   };
 }

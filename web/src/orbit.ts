@@ -1,9 +1,6 @@
-// A turntable about a target, up = +Y: what mouse and fingers turn into a look-at.
+// A turntable about a target, up = +Y: what mouse, fingers and keys turn into a look-at.
 import type { LookAt, Vec3 } from "./protocol.js";
-
-const add = (a: Vec3, b: Vec3, s = 1): Vec3 => [a[0] + b[0] * s, a[1] + b[1] * s, a[2] + b[2] * s];
-const cross = (a: Vec3, b: Vec3): Vec3 => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const length = (a: Vec3): number => Math.hypot(a[0], a[1], a[2]);
+import { add, cross, length } from "./vectors.js";
 
 const ELEVATION_MAX = Math.PI / 2 - 0.01; // up must not lie along the view
 
@@ -42,8 +39,12 @@ export class Orbit {
     this.target = add(add(this.target, right, -dx * extent), up, dy * extent);
   }
 
-  zoom(factor: number): void {
-    this.distance = Math.min(1e15, Math.max(1e-9, this.distance * factor));
+  // About the point at (x, y) from the picture's middle, fractions of its height: what lies there at the target's depth stays there.
+  zoom(factor: number, x = 0, y = 0): void {
+    const distance = Math.min(1e15, Math.max(1e-9, this.distance * factor));
+    const kept = distance / this.distance;
+    this.pan(x * (kept - 1), y * (kept - 1));
+    this.distance = distance;
   }
 
   private arm(): Vec3 {
