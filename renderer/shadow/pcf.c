@@ -4,7 +4,7 @@
 
 static const struct param_desc params[] = {
     SHADOW_MAP_PARAMS,
-    SHADOW_BIAS_PARAMS,
+    SHADOW_BIAS_PARAMS(0.006, 0.25),
     {.name = "kernel", .unit = "texels", .help = "Side of the square of texels that are compared.", .kind = PARAM_INT, .min = 1,
      .max = 31, .initial = 5, .odd = true},
 };

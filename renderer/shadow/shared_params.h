@@ -17,11 +17,11 @@ enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT };
 
 /* The next two of those that compare depths with a bias. Defaults: the pair with the fewest misclassified pixels over the four
  * paper models at size 1024 (docs/bias.md). */
-#define SHADOW_BIAS_PARAMS                                                                                             \
+#define SHADOW_BIAS_PARAMS(bias_default, slope_default)                                                                                             \
     {.name = "bias", .unit = "scene units", .help = "Depth by which a point may lie behind the stored surface and still be lit.",   \
-     .kind = PARAM_FLOAT, .min = 0, .max = 1e6, .initial = 0.00075},                                                         \
+     .kind = PARAM_FLOAT, .min = 0, .max = 1e6, .initial = (bias_default)},                                                         \
     {.name = "slope", .unit = "", .help = "More of it: times a texel's size times the tangent of the angle of incidence.",          \
-     .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = 0.5}
+     .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = (slope_default)}
 
 struct light_maps;
 

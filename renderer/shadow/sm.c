@@ -2,7 +2,7 @@
 #include "shadow/light_maps.h"
 #include "shadow/shared_params.h"
 
-static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS};
+static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS(0.00075, 0.5)};
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)
 {
