@@ -147,7 +147,10 @@ static bool run_lighting(struct renderer *r, struct render_scene *s, const struc
 static void describe_lights(const struct render_scene *s, const struct render_settings *settings, struct frame_info *info)
 {
     for (size_t i = 0; i < settings->light_count; i++) {
-        info->shadow_bytes += light_state_bytes(s->current[i]);
+        bool shared = false; /* equal lights share a state */
+        for (size_t k = 0; k < i; k++)
+            shared |= s->current[k] == s->current[i];
+        info->shadow_bytes += shared ? 0 : light_state_bytes(s->current[i]);
         info->map_count_total += s->current[i]->fit.map_count;
     }
     if (settings->light_count == 0)

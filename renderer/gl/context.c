@@ -122,6 +122,20 @@ static void close_context(struct gl_context *gl)
     gl->gbm_fd = -1;
 }
 
+/* With word of resets (a driver that hung, a device that went away) where the driver gives it. */
+static EGLContext create_context(EGLDisplay display, EGLConfig config, bool debug)
+{
+    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                           EGL_CONTEXT_OPENGL_DEBUG, debug,
+                           EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
+    EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+    if (context)
+        return context;
+    attributes[8] = EGL_NONE;
+    return eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+}
+
 static bool make_context(struct gl_context *gl, struct attempt *a, bool debug)
 {
     char *why = a->info.why_not;
@@ -152,10 +166,7 @@ static bool make_context(struct gl_context *gl, struct attempt *a, bool debug)
             return false;
         }
     }
-    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                           EGL_CONTEXT_OPENGL_DEBUG, debug, EGL_NONE};
-    gl->context = eglCreateContext(gl->display, config, EGL_NO_CONTEXT, attributes);
+    gl->context = create_context(gl->display, config, debug);
     if (!gl->context || !eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context)) {
         snprintf(why, size, "no OpenGL 4.5 core context: %s", egl_error_name());
         return false;
@@ -272,11 +283,12 @@ void gl_context_finish(struct gl_context *gl) { close_context(gl); }
 
 bool gl_check_at(struct gl_context *gl, const char *where, struct error *err)
 {
-    GLenum code = glGetError();
+    GLenum code = glGetGraphicsResetStatus() == GL_NO_ERROR ? glGetError() : GL_CONTEXT_LOST;
     if (code == GL_NO_ERROR)
         return true;
     gl->failed = true;
-    while (glGetError() != GL_NO_ERROR)
+    /* A lost context may answer for ever. */
+    for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; i++)
         ;
     log_warning("%s: GL error 0x%04x", where, code);
     if (code == GL_OUT_OF_MEMORY)

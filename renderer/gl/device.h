@@ -14,5 +14,6 @@ struct device_info {
     bool software;
 };
 
-/* Tries every device; returns how many were written to `out` (at most `max`). Makes and destroys a context for each. */
+/* Tries every device; returns how many were written to `out` (at most `max`). Makes and destroys a context for each, and ends
+ * their displays: not to be called while a renderer lives. */
 size_t gl_device_list(struct device_info *out, size_t max);

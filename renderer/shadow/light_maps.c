@@ -68,8 +68,9 @@ static bool trace_maps(struct light_maps *m, const struct shadow_input *in, stru
     return ok;
 }
 
-bool light_maps_render(struct light_maps *m, const struct shadow_input *in, struct error *err)
+bool light_maps_prepare(void *maps, const struct shadow_input *in, struct error *err)
 {
+    struct light_maps *m = maps;
     m->fit = *in->fit;
     m->fit.casters = NULL;
     uint32_t size = in->fit->maps[0].width;
@@ -118,13 +119,15 @@ bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct
     return true;
 }
 
-size_t light_maps_bytes(const struct light_maps *m)
+size_t light_maps_bytes(const void *maps)
 {
+    const struct light_maps *m = maps;
     return m->depth.bytes + m->draw.rows.size + m->draw.commands.size + m->draw.block.size + m->block.size;
 }
 
-void light_maps_finish(struct light_maps *m)
+void light_maps_finish(void *maps)
 {
+    struct light_maps *m = maps;
     gl_texture_finish(&m->depth);
     gl_target_finish(&m->target);
     draw_view_finish(&m->draw);

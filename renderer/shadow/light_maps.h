@@ -17,11 +17,10 @@ struct light_maps {
     struct shadow_fit fit;     /* as rendered; casters not kept */
 };
 
-/* Renders all maps of in->fit. */
-bool light_maps_render(struct light_maps *m, const struct shadow_input *in, struct error *err);
+/* A system whose state is one struct light_maps names these three in its descriptor. prepare renders all maps of in->fit. */
+bool light_maps_prepare(void *maps, const struct shadow_input *in, struct error *err);
+size_t light_maps_bytes(const void *maps);
+void light_maps_finish(void *maps);
 
 /* Makes them what shaders/maps.glsl reads, relative to in->view. */
 bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct error *err);
-
-size_t light_maps_bytes(const struct light_maps *m);
-void light_maps_finish(struct light_maps *m);

@@ -9,18 +9,10 @@ static const struct param_desc params[] = {
      .max = 31, .initial = 5, .odd = true},
 };
 
-static bool prepare(void *state, const struct shadow_input *in, struct error *err)
-{
-    return light_maps_render(state, in, err);
-}
-
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     return shadow_run_with_maps(state, in, "pcf.frag", err);
 }
-
-static void finish(void *state) { light_maps_finish(state); }
-static size_t bytes(const void *state) { return light_maps_bytes(state); }
 
 const struct shadow_system shadow_pcf = {
     .name = "pcf",
@@ -31,8 +23,8 @@ const struct shadow_system shadow_pcf = {
     .params = params,
     .param_count = sizeof params / sizeof *params,
     .state_size = sizeof(struct light_maps),
-    .prepare = prepare,
+    .prepare = light_maps_prepare,
     .resolve = resolve,
-    .finish = finish,
-    .bytes = bytes,
+    .finish = light_maps_finish,
+    .bytes = light_maps_bytes,
 };

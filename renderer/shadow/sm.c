@@ -4,18 +4,10 @@
 
 static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS(0.00075, 0.5)};
 
-static bool prepare(void *state, const struct shadow_input *in, struct error *err)
-{
-    return light_maps_render(state, in, err);
-}
-
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     return shadow_run_with_maps(state, in, "sm.frag", err);
 }
-
-static void finish(void *state) { light_maps_finish(state); }
-static size_t bytes(const void *state) { return light_maps_bytes(state); }
 
 const struct shadow_system shadow_sm = {
     .name = "sm",
@@ -26,8 +18,8 @@ const struct shadow_system shadow_sm = {
     .params = params,
     .param_count = sizeof params / sizeof *params,
     .state_size = sizeof(struct light_maps),
-    .prepare = prepare,
+    .prepare = light_maps_prepare,
     .resolve = resolve,
-    .finish = finish,
-    .bytes = bytes,
+    .finish = light_maps_finish,
+    .bytes = light_maps_bytes,
 };
