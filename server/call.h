@@ -10,7 +10,7 @@ struct error;
 struct method;
 struct scene_entry;
 struct server;
-struct snapshot;
+struct render_request;
 
 /* What a method's handler returns. */
 enum outcome {
@@ -28,7 +28,9 @@ struct call {
     json_t *id;     /* NULL: a notification, or HTTP */
     json_t *params; /* may be NULL */
     const struct method *method;
-    struct scene_entry *scene; /* waited for; one reference */
-    struct snapshot *snapshot; /* under way */
-    char allow_origin[256];    /* HTTP: "" none */
+    struct scene_entry *scene;      /* waited for; one reference */
+    struct render_request *request; /* under way */
+    bool told;                      /* $/progress: what was told last follows */
+    int stage, permille;
+    char allow_origin[256]; /* HTTP: "" none */
 };

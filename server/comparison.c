@@ -7,33 +7,8 @@
 
 #include "base/error.h"
 #include "base/job_pool.h"
-#include "progress.h"
 #include "stage.h"
 #include "trace/tracer.h"
-
-bool against_parse(const char *text, struct against *out, struct error *err)
-{
-    *out = (struct against){.kind = AGAINST_POINT};
-    if (!strcmp(text, "point"))
-        return true;
-    out->kind = AGAINST_SAMPLES32;
-    if (!strcmp(text, "samples32"))
-        return true;
-    if (!strncmp(text, "arealight", 9))
-        return error_set(err, ERROR_USAGE, "against", "arealight is not built yet; point, samples32 or an algorithm is accepted");
-    out->kind = AGAINST_SYSTEM;
-    if (shadow_parse(text, &out->system, &out->params, err))
-        return true;
-    return error_prefix(err, "neither point nor samples32 nor an algorithm");
-}
-
-void against_format(const struct against *against, char *out, size_t size)
-{
-    if (against->kind == AGAINST_SYSTEM)
-        shadow_format(against->system, &against->params, out, size);
-    else
-        snprintf(out, size, "%s", against->kind == AGAINST_POINT ? "point" : "samples32");
-}
 
 void comparison_finish(struct comparison *c)
 {
@@ -71,16 +46,14 @@ static bool comparison_init(struct comparison *c, const struct render_settings *
 
 /* A stretch of the whole bar. */
 struct stretch {
-    struct progress *progress;
+    const struct reference_progress *progress;
     double from, share;
 };
 
 static bool report_stretch(void *context, double done)
 {
     const struct stretch *s = context;
-    if (s->progress)
-        progress_set(s->progress, s->from + s->share * done);
-    return true;
+    return !s->progress || s->progress->report(s->progress->context, s->from + s->share * done);
 }
 
 static bool read_visibility(struct stage *stage, const struct render_settings *settings, float *const *out, struct error *err)
@@ -122,7 +95,7 @@ static bool render_truth(struct stage *stage, const struct against *against, str
 
 /* Which pixels lie wholly in one triangle: the camera's traced picture once for each sample, the view shifted so that the sample falls
  * on the pixel's centre. Only a classification of pixels, so the tracer's single precision does. */
-static bool find_one_triangle(struct stage *stage, const struct view *view, struct comparison *c, struct error *err)
+static bool find_one_triangle(const struct stage *stage, const struct view *view, struct comparison *c, struct error *err)
 {
     size_t pixels = (size_t)c->width * c->height;
     struct tracer *tracer = tracer_create(stage->scene, job_pool_threads(stage->pool), err);
@@ -146,7 +119,7 @@ static bool find_one_triangle(struct stage *stage, const struct view *view, stru
     return good;
 }
 
-static bool trace_samples32(const struct reference *reference, struct stage *stage, const struct view *view, size_t light,
+static bool trace_samples32(const struct reference *reference, const struct stage *stage, const struct view *view, size_t light,
                             const struct reference_progress *progress, struct comparison *c, struct reference_counts *counts,
                             struct error *err)
 {
@@ -162,11 +135,11 @@ static bool trace_samples32(const struct reference *reference, struct stage *sta
     }
     free(receivers);
     free(lit);
-    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference stopped early: memory is out");
+    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference was stopped early");
 }
 
 /* With a system as the reference, tracing says only which pixels count. */
-static bool trace_point(const struct reference *reference, struct stage *stage, const struct view *view, size_t light,
+static bool trace_point(const struct reference *reference, const struct stage *stage, const struct view *view, size_t light,
                         const struct reference_progress *progress, bool keep, struct comparison *c,
                         struct reference_counts *counts, struct error *err)
 {
@@ -174,7 +147,7 @@ static bool trace_point(const struct reference *reference, struct stage *stage, 
     bool good = (keep || scratch) && reference_point(reference, view, &stage->settings.lights[light], c->ids, stage->pool,
                                                      progress, keep ? c->truth[light] : scratch, c->receiver[light], counts);
     free(scratch);
-    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference stopped early: memory is out");
+    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference was stopped early");
 }
 
 static double milliseconds(void)
@@ -184,8 +157,9 @@ static double milliseconds(void)
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
-static bool trace_lights(const struct reference *reference, struct stage *stage, const struct against *against,
-                         const struct view *view, struct progress *progress, struct comparison *c, struct error *err)
+static bool trace_lights(const struct reference *reference, const struct stage *stage, const struct against *against,
+                         const struct view *view, const struct reference_progress *progress, struct comparison *c,
+                         struct error *err)
 {
     for (size_t i = 0; i < c->light_count; i++) {
         struct reference_counts counts = {0};
@@ -203,8 +177,8 @@ static bool trace_lights(const struct reference *reference, struct stage *stage,
     return true;
 }
 
-static bool compute_truth(struct stage *stage, const struct against *against, struct progress *progress, struct comparison *c,
-                          struct error *err)
+static bool compute_truth(const struct stage *stage, const struct against *against, const struct reference_progress *progress,
+                          struct comparison *c, struct error *err)
 {
     struct view view = view_from_camera(&stage->settings.camera, c->width, c->height);
     struct reference *reference = reference_create(stage->scene, job_pool_threads(stage->pool), err);
@@ -238,10 +212,14 @@ static bool measure(struct comparison *c, struct error *err)
     return good || error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for the error figures");
 }
 
-bool comparison_run(struct stage *stage, const struct against *against, struct progress *progress, struct comparison *out,
-                    struct error *err)
+bool comparison_render(struct stage *stage, const struct against *against, struct comparison *out, struct error *err)
 {
     return comparison_init(out, &stage->settings, err) && render_tested(stage, out, err) &&
-           (against->kind != AGAINST_SYSTEM || render_truth(stage, against, out, err)) &&
-           compute_truth(stage, against, progress, out, err) && measure(out, err);
+           (against->kind != AGAINST_SYSTEM || render_truth(stage, against, out, err));
+}
+
+bool comparison_trace(const struct stage *stage, const struct against *against, const struct reference_progress *progress,
+                      struct comparison *c, struct error *err)
+{
+    return compute_truth(stage, against, progress, c, err) && measure(c, err);
 }

@@ -5,26 +5,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "against.h"
 #include "reference/metrics.h"
 #include "reference/reference.h"
 #include "renderer.h"
 
-struct progress;
 struct stage;
-
-enum against_kind { AGAINST_POINT, AGAINST_SAMPLES32, AGAINST_SYSTEM };
-
-/* What is taken for true. */
-struct against {
-    enum against_kind kind;
-    const struct shadow_system *system; /* AGAINST_SYSTEM */
-    struct shadow_params params;
-};
-
-/* "point", "samples32" or an algorithm with parameters. ERROR_USAGE. */
-bool against_parse(const char *text, struct against *out, struct error *err);
-/* The same back, every parameter written out. `out` holds at least 256 bytes. */
-void against_format(const struct against *against, char *out, size_t size);
 
 /* Everything is owned: comparison_finish(). Arrays hold width * height entries. */
 struct comparison {
@@ -42,8 +28,10 @@ struct comparison {
     void *picture;                  /* the tested picture, RGBA8 */
 };
 
-/* Renders the stage's settings once at one sample a pixel, reads visibility back, computes the reference and measures. The caller
- * finishes `out` whatever this returns. */
-bool comparison_run(struct stage *stage, const struct against *against, struct progress *progress, struct comparison *out,
-                    struct error *err);
+/* The device's share: renders the stage's settings once at one sample a pixel, and the system that is taken for true, and reads visibility
+ * back. On the renderer's thread. The caller finishes `out` whatever this returns. */
+bool comparison_render(struct stage *stage, const struct against *against, struct comparison *out, struct error *err);
+/* The rest: traces the reference and measures. Any thread; the stage's renderer is not used. `progress` may be NULL. */
+bool comparison_trace(const struct stage *stage, const struct against *against, const struct reference_progress *progress,
+                      struct comparison *c, struct error *err);
 void comparison_finish(struct comparison *c);

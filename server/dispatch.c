@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "answer.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "http.h"
 #include "numbers.h"
-#include "output.h"
+#include "pending.h"
 #include "server.h"
 
 const struct method *method_find(const char *name)
@@ -17,80 +17,6 @@ const struct method *method_find(const char *name)
         if (strcmp(method->name, name) == 0)
             return method;
     return NULL;
-}
-
-enum rpc_code dispatch_code(const struct error *err)
-{
-    switch (err->code) {
-    case ERROR_USAGE: return RPC_INVALID_PARAMS;
-    case ERROR_DATA: return RPC_BAD_SCENE;
-    case ERROR_NO_INPUT: return RPC_NO_SUCH_SCENE;
-    case ERROR_NO_DEVICE: return RPC_NO_DEVICE;
-    case ERROR_IO: return RPC_IO;
-    case ERROR_TRY_AGAIN: return RPC_BUSY;
-    case ERROR_NONE:
-    case ERROR_BUG: break;
-    }
-    return RPC_INTERNAL;
-}
-
-json_t *dispatch_error_json(enum rpc_code code, const struct error *err)
-{
-    /* Our sentences end with what would have been accepted: "...; 1 to 100 is accepted". */
-    const char *limit = strrchr(err->message, ';');
-    json_t *data = json_pack("{s:o}", "field", json_text(err->field));
-    if (limit)
-        json_object_set_new(data, "limit", json_text(limit + 1 + strspn(limit + 1, " ")));
-    return json_pack("{s:i, s:o, s:o*}", "code", (int)code, "message", json_text(err->message), "data", data);
-}
-
-static void send_json(struct server *server, uint64_t session, json_t *message)
-{
-    char *text = message ? json_dumps(message, JSON_COMPACT) : NULL;
-    struct packet *packet = text ? packet_from_text(text, strlen(text)) : NULL;
-    if (packet)
-        net_send(server->net, session, packet);
-    else
-        net_close(server->net, session, 1011, "out of memory");
-    free(text);
-    json_decref(message);
-}
-
-void dispatch_notify(struct server *server, uint64_t session, const char *method, json_t *params)
-{
-    send_json(server, session, json_pack("{s:s, s:s, s:o}", "jsonrpc", "2.0", "method", method, "params", params));
-}
-
-/* Takes `result` over. */
-static void answer(struct server *server, const struct call *call, json_t *result)
-{
-    if (call->id)
-        send_json(server, call->session, json_pack("{s:s, s:O, s:o}", "jsonrpc", "2.0", "id", call->id, "result", result));
-    else
-        json_decref(result);
-}
-
-/* "The Server MUST NOT reply to a Notification" (JSON-RPC 2.0, 4.1). */
-static void answer_error(struct server *server, const struct call *call, enum rpc_code code, const struct error *err)
-{
-    if (call->http) {
-        http_answer_error(server, call->session, call->allow_origin, code, err);
-        return;
-    }
-    if (!call->id) {
-        log_debug("a notification failed: %s", err->message);
-        return;
-    }
-    send_json(server, call->session,
-              json_pack("{s:s, s:O, s:o}", "jsonrpc", "2.0", "id", call->id, "error", dispatch_error_json(code, err)));
-}
-
-static void call_destroy(struct call *call)
-{
-    scene_entry_unref(call->scene);
-    json_decref(call->id);
-    json_decref(call->params);
-    free(call);
 }
 
 static bool may(const struct server *server, const struct call *call, struct error *err)
@@ -110,34 +36,34 @@ static enum outcome run_method(struct server *server, struct call *call, json_t 
     return call->method->run(server, call, &params, given, result, err);
 }
 
-/* Runs a call and answers it, or keeps it for later. Takes it over. */
-static void run(struct server *server, struct call *call)
+void dispatch_run(struct server *server, struct call *call)
 {
     struct error err = {0};
     json_t *result = NULL;
     if (!may(server, call, &err)) {
-        answer_error(server, call, RPC_FORBIDDEN, &err);
-        call_destroy(call);
+        rpc_answer_error(server, call, RPC_FORBIDDEN, &err);
+        call_free(call);
+        return;
+    }
+    if (pending_count(server, call->session) >= PENDING_MAX) {
+        error_set(&err, ERROR_TRY_AGAIN, NULL, "%d requests of this session are under way; answers to them come first",
+                  PENDING_MAX);
+        rpc_answer_error(server, call, RPC_BUSY, &err);
+        call_free(call);
         return;
     }
     switch (run_method(server, call, &result, &err)) {
-    case OUTCOME_DONE: answer(server, call, result ? result : json_object()); break;
-    case OUTCOME_FAILED: answer_error(server, call, dispatch_code(&err), &err); break;
+    case OUTCOME_DONE: rpc_answer(server, call, result ? result : json_object()); break;
+    case OUTCOME_FAILED: rpc_answer_error(server, call, rpc_code_of(&err), &err); break;
     case OUTCOME_NO_VIEW:
         error_set(&err, ERROR_USAGE, "view",
                   "view: this session has no such view; the number that view.open returned is accepted");
-        answer_error(server, call, RPC_NO_SUCH_VIEW, &err);
+        rpc_answer_error(server, call, RPC_NO_SUCH_VIEW, &err);
         break;
     case OUTCOME_SCENE:
-        call->link = server->waiting;
-        server->waiting = call;
-        return;
-    case OUTCOME_LATER:
-        call->link = server->pictures;
-        server->pictures = call;
-        return;
+    case OUTCOME_LATER: pending_add(server, call); return;
     }
-    call_destroy(call);
+    call_free(call);
 }
 
 static bool is_id(const json_t *id) { return json_is_string(id) || json_is_number(id); }
@@ -146,7 +72,7 @@ static bool is_id(const json_t *id) { return json_is_string(id) || json_is_numbe
 static void refuse_message(struct server *server, uint64_t session, json_t *id, enum rpc_code code, const struct error *err)
 {
     struct call call = {.session = session, .id = is_id(id) ? id : json_null()};
-    answer_error(server, &call, code, err);
+    rpc_answer_error(server, &call, code, err);
 }
 
 static bool check_envelope(const json_t *message, struct error *err)
@@ -193,7 +119,7 @@ void dispatch_message(struct server *server, uint64_t session, const char *text,
         call->method = method;
         call->id = json_incref(id);
         call->params = json_incref(json_object_get(message, "params"));
-        run(server, call);
+        dispatch_run(server, call);
     } else if (method) {
         net_close(server->net, session, 1011, "out of memory");
     }
@@ -219,82 +145,7 @@ void dispatch_render(struct server *server, uint64_t request, const char *allow_
     call->params = params;
     call->method = method_find(METHOD_RENDER_SNAPSHOT);
     snprintf(call->allow_origin, sizeof call->allow_origin, "%s", allow_origin ? allow_origin : "");
-    run(server, call);
-}
-
-void dispatch_scenes_ready(struct server *server)
-{
-    struct call *calls = server->waiting;
-    server->waiting = NULL;
-    for (struct call *next; calls; calls = next) {
-        next = calls->link;
-        if (calls->scene->status == SCENE_LOADING) {
-            calls->link = server->waiting;
-            server->waiting = calls;
-            continue;
-        }
-        run(server, calls);
-    }
-    scene_store_forget_failed(server->scenes);
-}
-
-static void snapshot_destroy(struct snapshot *snapshot)
-{
-    scene_entry_unref(snapshot->scene);
-    free(snapshot);
-}
-
-/* WebSocket: the frame first, then the answer that names it. */
-static void answer_picture(struct server *server, const struct call *call, struct encode_job *job)
-{
-    size_t bytes = job->packet->size - GNMF_HEADER_SIZE;
-    net_send(server->net, call->session, job->packet);
-    job->packet = NULL;
-    answer(server, call,
-           json_pack("{s:I, s:[i,i], s:s, s:I, s:I, s:I}", "request_id", (json_int_t)job->header.request_id, "size",
-                     (int)job->width, (int)job->height, "format", codec_names[job->header.codec], "bytes", (json_int_t)bytes,
-                     "render_us", (json_int_t)job->header.render_us, "encode_us", (json_int_t)job->header.encode_us));
-}
-
-void dispatch_picture(struct server *server, struct encode_job *job)
-{
-    struct snapshot *snapshot = job->snapshot;
-    job->snapshot = NULL;
-    struct call **at = &server->pictures;
-    while (*at && (*at)->snapshot != snapshot)
-        at = &(*at)->link;
-    struct call *call = *at;
-    if (call) {
-        *at = call->link;
-        if (job->err.code != ERROR_NONE)
-            answer_error(server, call, dispatch_code(&job->err), &job->err);
-        else if (call->http)
-            http_answer_picture(server, call->session, call->allow_origin, job);
-        else
-            answer_picture(server, call, job);
-        call_destroy(call);
-    }
-    snapshot_destroy(snapshot);
-}
-
-static struct call **forget_first(struct call **at, uint64_t session)
-{
-    while (*at && (*at)->session != session)
-        at = &(*at)->link;
-    return *at ? at : NULL;
-}
-
-void dispatch_forget(struct server *server, uint64_t session)
-{
-    struct call **lists[] = {&server->waiting, &server->pictures};
-    for (size_t i = 0; i < 2; i++)
-        for (struct call **at; (at = forget_first(lists[i], session));) {
-            struct call *call = *at;
-            *at = call->link;
-            if (call->snapshot)
-                atomic_store(&call->snapshot->cancelled, true);
-            call_destroy(call);
-        }
+    dispatch_run(server, call);
 }
 
 enum outcome dispatch_scene(struct server *server, struct call *call, const char *name, struct scene_entry **out,

@@ -42,7 +42,7 @@ void encode_job_destroy(struct encode_job *job)
 {
     if (!job)
         return;
-    assert(!job->snapshot);
+    assert(!job->request);
     packet_unref(job->packet);
     free(job->pixels);
     free(job);
@@ -134,7 +134,7 @@ bool encode_pool_buffer(struct encode_pool *pool, struct encode_job *job, size_t
     return job->pixels;
 }
 
-static uint32_t view_of(const struct encode_job *job) { return job->snapshot ? 0 : job->header.view; }
+static uint32_t view_of(const struct encode_job *job) { return job->request ? 0 : job->header.view; }
 
 /* Mutex held. The oldest job whose view no other worker is at. */
 static struct encode_job *next_job(struct encode_pool *pool)
@@ -274,13 +274,18 @@ void encode_pool_submit(struct encode_pool *pool, struct encode_job *job)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-void encode_pool_fail(struct encode_pool *pool, struct encode_job *job)
+void encode_pool_return(struct encode_pool *pool, struct encode_job *job)
 {
-    assert(job->err.code != ERROR_NONE);
     pthread_mutex_lock(&pool->mutex);
     list_push(&pool->finished, job);
     pthread_mutex_unlock(&pool->mutex);
     pool->done(pool->context);
+}
+
+void encode_pool_fail(struct encode_pool *pool, struct encode_job *job)
+{
+    assert(job->err.code != ERROR_NONE);
+    encode_pool_return(pool, job);
 }
 
 size_t encode_pool_pending(struct encode_pool *pool)

@@ -18,16 +18,16 @@ struct encode_job {
     int quality;                /* 1..100; JPEG and WebP */
     void *pixels;               /* from encode_pool_buffer(); rgba8, or rgba32f for EXR */
     size_t pixels_capacity;
-    uint32_t width, height;    /* pixels; a snapshot's may not fit the header's 16 bits */
-    struct snapshot *snapshot; /* NULL for a stream frame; not touched here */
+    uint32_t width, height;         /* pixels; a snapshot's may not fit the header's 16 bits */
+    struct render_request *request; /* NULL for a stream frame; not touched here */
 
-    /* Result: one of the two. */
+    /* Result: one of the two; neither for what has no picture. */
     struct packet *packet; /* header and payload */
     struct error err;
 };
 
 struct encode_job *encode_job_create(void); /* zeroed; NULL when memory is out */
-/* Accepts NULL. Neither `snapshot` nor pixels still in use may be left. */
+/* Accepts NULL. Neither `request` nor pixels still in use may be left. */
 void encode_job_destroy(struct encode_job *job);
 
 /* `done` is called on a worker after each job. */
@@ -41,7 +41,9 @@ bool encode_pool_buffer(struct encode_pool *pool, struct encode_job *job, size_t
 
 /* Any thread; the pool owns the job until it is taken. Jobs of one view (header.view, streams only) finish in the order submitted. */
 void encode_pool_submit(struct encode_pool *pool, struct encode_job *job);
-/* Hands a job that failed before encoding (err set) straight back. */
+/* Hands a job with nothing to encode straight back. */
+void encode_pool_return(struct encode_pool *pool, struct encode_job *job);
+/* The same for one that failed (err set). */
 void encode_pool_fail(struct encode_pool *pool, struct encode_job *job);
 
 /* Jobs submitted and not finished. Any thread. */

@@ -5,8 +5,11 @@
 
 #include "renderer.h"
 
+struct against;
+struct comparison;
 struct measurement;
 struct metrics;
+struct stage;
 
 /* One measured picture. The caller owns the object; NULL when memory is out. */
 json_t *figures_render(const struct scene *scene, const struct render_settings *settings, const struct device_info *device,
@@ -14,6 +17,9 @@ json_t *figures_render(const struct scene *scene, const struct render_settings *
 
 /* The error figures of one light, or pooled over all. What was not measured is null. */
 json_t *figures_errors(const struct metrics *metrics);
+
+/* Adds what only a comparison has to figures_render()'s object. */
+void figures_add_comparison(json_t *figures, const struct against *against, const struct stage *stage, const struct comparison *c);
 
 /* Values of a system's parameters: {"size": 1024, "layout": "exact", ...}; a choice that is a number is written as one. */
 json_t *figures_params(const struct shadow_system *system, const struct shadow_params *params);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "answer.h"
 #include "base/embed.h"
 #include "base/error.h"
 #include "server.h"
@@ -169,7 +170,7 @@ static int status_of(enum rpc_code code)
 void http_answer_error(struct server *server, uint64_t request, const char *allow_origin, enum rpc_code code,
                        const struct error *err)
 {
-    json_t *body = json_pack("{s:o}", "error", dispatch_error_json(code, err));
+    json_t *body = json_pack("{s:o}", "error", rpc_error_json(code, err));
     char *text = body ? json_dumps(body, JSON_COMPACT) : NULL;
     struct net_response response = {.status = status_of(code),
                                     .type = "application/json",

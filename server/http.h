@@ -7,6 +7,8 @@
 #include "dispatch.h"
 #include "net.h"
 
+struct encode_job;
+
 /* net_handlers.admit: Host, Origin, then the token; the tag is the role. */
 int http_admit(void *context, const struct net_request *request, unsigned *tag);
 /* net_handlers.request. */

@@ -1,5 +1,3 @@
-#include "render_loop.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <pthread.h>
@@ -9,6 +7,8 @@
 
 #include "base/log.h"
 #include "clock.h"
+#include "compare_task.h"
+#include "render_loop_state.h"
 #include "scene_store.h"
 
 /* How often to ask whether the GPU is done while there is nothing else to do. */
@@ -16,53 +16,12 @@
 /* Pictures waiting for an encoder; past this, rendering more would only age them. */
 #define ENCODE_BACKLOG 4
 
-struct render_loop {
-    struct render_loop_options options;
-    pthread_t thread;
-    pthread_mutex_t mutex;
-    pthread_cond_t changed;
-
-    /* Guarded. */
-    struct stream_view views[RENDER_LOOP_VIEWS];
-    struct snapshot *snapshots; /* oldest first */
-    size_t snapshot_count;
-    struct scene_entry *retired, *remaining; /* `remaining`: at the end, not ours to free */
-    bool stopping, started, failed;
-    uint64_t events; /* counts every change: what the thread has seen tells whether to sleep */
-    struct error start_error;
-
-    /* Render thread. */
-    struct renderer *renderer;
-    struct device_info device;
-    struct encode_job *in_flight[RENDERER_IN_FLIGHT]; /* submitted, oldest first */
-    struct scene_entry *in_flight_scene[RENDERER_IN_FLIGHT];
-    size_t in_flight_algorithm[RENDERER_IN_FLIGHT];
-    unsigned in_flight_count;
-    unsigned turn;      /* where the search for the next view begins */
-    bool snapshot_last; /* snapshots and views take turns */
-    uint64_t token;
-};
-
 /* What the thread picked to render, copied out of the lock. */
 struct picked {
     struct encode_job *job;
     struct scene_entry *scene; /* one reference */
     struct render_settings settings;
 };
-
-static void changed(struct render_loop *loop)
-{
-    loop->events++;
-    pthread_cond_signal(&loop->changed);
-}
-
-static struct stream_view *find_view(struct render_loop *loop, uint32_t view)
-{
-    for (size_t i = 0; i < RENDER_LOOP_VIEWS; i++)
-        if (loop->views[i].id == view && view != 0)
-            return &loop->views[i];
-    return NULL;
-}
 
 static size_t algorithm_index(const struct shadow_system *system)
 {
@@ -127,18 +86,28 @@ static bool pick_view(struct render_loop *loop, struct picked *out, uint64_t *du
 }
 
 /* Locked. */
+static struct encode_job *take_request(struct render_request **list, size_t *count)
+{
+    struct render_request *request = *list;
+    struct encode_job *job = request ? encode_job_create() : NULL;
+    if (!job)
+        return NULL;
+    *list = request->link;
+    --*count;
+    job->session = request->session;
+    job->quality = request->quality;
+    job->request = request;
+    return job;
+}
+
+/* Locked. */
 static bool pick_snapshot(struct render_loop *loop, struct picked *out)
 {
-    struct snapshot *snapshot = loop->snapshots;
-    if (!snapshot || !(out->job = encode_job_create()))
+    if (!(out->job = take_request(&loop->snapshots, &loop->snapshot_count)))
         return false;
-    loop->snapshots = snapshot->link;
-    loop->snapshot_count--;
+    const struct render_request *snapshot = out->job->request;
     out->scene = scene_entry_ref(snapshot->scene);
     out->settings = snapshot->settings;
-    out->job->session = snapshot->session;
-    out->job->quality = snapshot->quality;
-    out->job->snapshot = snapshot;
     out->job->header = (struct frame_header){
         .kind = GNMF_SNAPSHOT,
         .codec = snapshot->codec,
@@ -155,11 +124,11 @@ static bool pick(struct render_loop *loop, struct picked *out, uint64_t *due_us)
     bool first = !loop->snapshot_last && pick_snapshot(loop, out);
     bool found = first || pick_view(loop, out, due_us) || pick_snapshot(loop, out);
     if (found)
-        loop->snapshot_last = out->job->snapshot;
+        loop->snapshot_last = out->job->request;
     return found;
 }
 
-static bool snapshot_is_late(const struct snapshot *snapshot, struct error *err)
+static bool request_is_late(const struct render_request *snapshot, struct error *err)
 {
     if (atomic_load(&snapshot->cancelled))
         return !error_set(err, ERROR_TRY_AGAIN, NULL, "the request was cancelled");
@@ -179,11 +148,13 @@ static bool upload(struct render_loop *loop, struct scene_entry *scene, struct e
 /* `picked->job` and its scene reference pass on, to the ring or to the failed. */
 static void submit(struct render_loop *loop, const struct picked *picked)
 {
+    if (picked->job->request)
+        render_request_tell(picked->job->request, STAGE_RENDERING, -1);
     struct encode_job *job = picked->job;
     struct error err = {0};
     size_t algorithm = algorithm_index(picked->settings.system);
     job->header.algorithm = (uint16_t)algorithm;
-    if ((job->snapshot && snapshot_is_late(job->snapshot, &err)) || !upload(loop, picked->scene, &err) ||
+    if ((job->request && request_is_late(job->request, &err)) || !upload(loop, picked->scene, &err) ||
         !renderer_submit(loop->renderer, picked->scene->gpu, &picked->settings, ++loop->token, &err)) {
         fail_job(loop, job, &err);
         scene_entry_unref(picked->scene);
@@ -228,10 +199,12 @@ static void deliver(struct render_loop *loop, const struct frame_info *info)
     job->header.height = (uint16_t)info->height;
     job->header.render_us = frame_microseconds(info->frame_ms);
     pthread_mutex_lock(&loop->mutex);
-    struct stream_view *view = find_view(loop, job->header.view);
+    struct stream_view *view = render_loop_find_view(loop, job->header.view);
     if (view)
         view->last = *info;
     pthread_mutex_unlock(&loop->mutex);
+    if (job->request)
+        render_request_tell(job->request, STAGE_ENCODING, -1);
     encode_pool_submit(loop->options.encoders, job);
 }
 
@@ -287,6 +260,60 @@ static bool has_room(struct render_loop *loop)
            encode_pool_pending(loop->options.encoders) + loop->in_flight_count < ENCODE_BACKLOG;
 }
 
+/* Between two frames of a comparison: what is in flight comes out, then each view that wants a frame gets one. False to stop comparing. */
+static bool serve_streams(void *context)
+{
+    struct render_loop *loop = context;
+    struct picked picked;
+    uint64_t due = UINT64_MAX;
+    bool stopping = false;
+    for (unsigned round = 0; round < RENDER_LOOP_VIEWS; round++) {
+        while (loop->in_flight_count > 0 && collect(loop, true))
+            ;
+        bool room = has_room(loop);
+        pthread_mutex_lock(&loop->mutex);
+        stopping = loop->stopping;
+        bool found = !stopping && room && pick_view(loop, &picked, &due);
+        pthread_mutex_unlock(&loop->mutex);
+        if (!found)
+            break;
+        submit(loop, &picked);
+    }
+    return !stopping && !loop->failed && loop->in_flight_count == 0;
+}
+
+static void compare_thread_done(void *context) { render_loop_kick(context); }
+
+/* The device's share of a comparison, here; the rest on the task's own thread. */
+static void run_compare(struct render_loop *loop, struct encode_job *job)
+{
+    struct error err = {0};
+    struct scene_entry *scene = scene_entry_ref(job->request->scene);
+    job->header.algorithm = (uint16_t)algorithm_index(job->request->settings.system);
+    render_request_tell(job->request, STAGE_RENDERING, -1);
+    const struct compare_options options = {.renderer = loop->renderer,
+                                            .pool = loop->options.pool,
+                                            .encoders = loop->options.encoders,
+                                            .between = serve_streams,
+                                            .done = compare_thread_done,
+                                            .context = loop};
+    if (request_is_late(job->request, &err) || !serve_streams(loop) || !upload(loop, scene, &err) ||
+        !(loop->comparing = compare_task_create(&options, scene->gpu, job, &err))) {
+        if (err.code == ERROR_NONE)
+            error_set(&err, ERROR_TRY_AGAIN, NULL, "the server is shutting down");
+        fail_job(loop, job, &err);
+    }
+    scene_entry_unref(scene);
+}
+
+static void finish_compare(struct render_loop *loop, bool wait)
+{
+    if (loop->comparing && (wait || compare_task_is_done(loop->comparing))) {
+        compare_task_destroy(loop->comparing);
+        loop->comparing = NULL;
+    }
+}
+
 /* One round: frees what is retired, collects what is done, submits what is wanted, sleeps when there was nothing to do. False to stop. */
 static bool turn(struct render_loop *loop)
 {
@@ -299,35 +326,40 @@ static bool turn(struct render_loop *loop)
     loop->retired = NULL;
     pthread_mutex_unlock(&loop->mutex);
     destroy_scenes(retired);
+    finish_compare(loop, false);
 
     bool room = has_room(loop);
     pthread_mutex_lock(&loop->mutex);
     bool stopping = loop->stopping;
+    bool may_compare = !stopping && !loop->failed && !loop->comparing;
+    struct encode_job *compare = may_compare ? take_request(&loop->compares, &loop->compare_count) : NULL;
     bool found = !stopping && room && pick(loop, &picked, &due);
-    if (!found && !collected && !stopping) {
+    if (!found && !collected && !stopping && !compare) {
         uint64_t poll = clock_us() + POLL_US;
         wait_change(loop, seen, loop->in_flight_count > 0 && !loop->failed && poll < due ? poll : due);
     }
     pthread_mutex_unlock(&loop->mutex);
     if (found)
         submit(loop, &picked);
+    if (compare)
+        run_compare(loop, compare);
     return !stopping;
 }
 
-/* Snapshots that will not be rendered any more go back with a reason. */
-static void refuse_snapshots(struct render_loop *loop)
+/* Requests that will not be rendered any more go back with a reason. */
+static void refuse_requests(struct render_loop *loop)
 {
     struct error err = {0};
+    struct encode_job *job;
     error_set(&err, ERROR_TRY_AGAIN, NULL, "the server is shutting down");
-    struct picked picked;
-    pthread_mutex_lock(&loop->mutex);
-    while (pick_snapshot(loop, &picked)) {
-        scene_entry_unref(picked.scene);
-        pthread_mutex_unlock(&loop->mutex);
-        fail_job(loop, picked.job, &err);
+    do {
         pthread_mutex_lock(&loop->mutex);
-    }
-    pthread_mutex_unlock(&loop->mutex);
+        if (!(job = take_request(&loop->snapshots, &loop->snapshot_count)))
+            job = take_request(&loop->compares, &loop->compare_count);
+        pthread_mutex_unlock(&loop->mutex);
+        if (job)
+            fail_job(loop, job, &err);
+    } while (job);
 }
 
 /* What could not be collected. */
@@ -358,7 +390,8 @@ static void *render_main(void *argument)
         return NULL;
     while (turn(loop))
         ;
-    refuse_snapshots(loop);
+    finish_compare(loop, true);
+    refuse_requests(loop);
     while (loop->in_flight_count > 0 && collect(loop, true))
         ;
     while (loop->in_flight_count > 0)
@@ -412,7 +445,7 @@ void render_loop_stop(struct render_loop *loop, struct scene_entry *scenes)
     pthread_mutex_lock(&loop->mutex);
     loop->stopping = true;
     loop->remaining = scenes;
-    changed(loop);
+    render_loop_changed(loop);
     pthread_mutex_unlock(&loop->mutex);
     pthread_join(loop->thread, NULL);
 }
@@ -424,131 +457,6 @@ void render_loop_destroy(struct render_loop *loop)
     pthread_cond_destroy(&loop->changed);
     pthread_mutex_destroy(&loop->mutex);
     free(loop);
-}
-
-bool render_loop_open(struct render_loop *loop, uint32_t view, uint64_t session, struct scene_entry *scene,
-                      const struct view_state *state)
-{
-    assert(view != 0 && scene->status == SCENE_READY);
-    bool found = false;
-    pthread_mutex_lock(&loop->mutex);
-    for (size_t i = 0; i < RENDER_LOOP_VIEWS && !found; i++) {
-        if (loop->views[i].id != 0)
-            continue;
-        loop->views[i] = (struct stream_view){.id = view, .session = session, .scene = scene_entry_ref(scene)};
-        enum drop_reason reason;
-        stream_view_update(&loop->views[i], state, clock_us(), &reason);
-        changed(loop);
-        found = true;
-    }
-    pthread_mutex_unlock(&loop->mutex);
-    return found;
-}
-
-void render_loop_update(struct render_loop *loop, uint32_t view, const struct view_state *state)
-{
-    pthread_mutex_lock(&loop->mutex);
-    struct stream_view *v = find_view(loop, view);
-    if (v) {
-        enum drop_reason reason;
-        if (stream_view_update(v, state, clock_us(), &reason))
-            atomic_fetch_add(&loop->options.metrics->dropped[reason], 1);
-        changed(loop);
-    }
-    pthread_mutex_unlock(&loop->mutex);
-}
-
-void render_loop_close(struct render_loop *loop, uint32_t view)
-{
-    pthread_mutex_lock(&loop->mutex);
-    struct stream_view *v = find_view(loop, view);
-    if (v) {
-        scene_entry_unref(v->scene);
-        *v = (struct stream_view){0};
-    }
-    pthread_mutex_unlock(&loop->mutex);
-}
-
-bool render_loop_ack(struct render_loop *loop, uint32_t view, uint64_t frame)
-{
-    pthread_mutex_lock(&loop->mutex);
-    struct stream_view *v = find_view(loop, view);
-    bool ok = v && stream_view_ack(v, frame, clock_us());
-    changed(loop);
-    pthread_mutex_unlock(&loop->mutex);
-    return ok;
-}
-
-void render_loop_sent(struct render_loop *loop, uint32_t view, uint64_t frame, uint32_t encode_us, size_t bytes)
-{
-    pthread_mutex_lock(&loop->mutex);
-    struct stream_view *v = find_view(loop, view);
-    if (v)
-        stream_view_sent(v, frame, encode_us, bytes, clock_us());
-    pthread_mutex_unlock(&loop->mutex);
-}
-
-void render_loop_lost(struct render_loop *loop, uint32_t view, uint64_t frame)
-{
-    pthread_mutex_lock(&loop->mutex);
-    struct stream_view *v = find_view(loop, view);
-    if (v)
-        stream_view_lost(v, frame);
-    changed(loop);
-    pthread_mutex_unlock(&loop->mutex);
-}
-
-void render_loop_blocked(struct render_loop *loop, uint64_t session, bool blocked)
-{
-    pthread_mutex_lock(&loop->mutex);
-    for (size_t i = 0; i < RENDER_LOOP_VIEWS; i++)
-        if (loop->views[i].id != 0 && loop->views[i].session == session)
-            loop->views[i].blocked = blocked;
-    changed(loop);
-    pthread_mutex_unlock(&loop->mutex);
-}
-
-bool render_loop_snapshot(struct render_loop *loop, struct snapshot *snapshot)
-{
-    pthread_mutex_lock(&loop->mutex);
-    bool room = loop->snapshot_count < RENDER_LOOP_SNAPSHOTS;
-    if (room) {
-        struct snapshot **end = &loop->snapshots;
-        while (*end)
-            end = &(*end)->link;
-        *end = snapshot;
-        snapshot->link = NULL;
-        loop->snapshot_count++;
-        changed(loop);
-    }
-    pthread_mutex_unlock(&loop->mutex);
-    return room;
-}
-
-bool render_loop_view(struct render_loop *loop, uint32_t view, struct stream_view *out)
-{
-    pthread_mutex_lock(&loop->mutex);
-    struct stream_view *v = find_view(loop, view);
-    if (v)
-        *out = *v;
-    pthread_mutex_unlock(&loop->mutex);
-    return v;
-}
-
-void render_loop_retire(struct render_loop *loop, struct scene_entry *scene)
-{
-    pthread_mutex_lock(&loop->mutex);
-    scene->link = loop->retired;
-    loop->retired = scene;
-    changed(loop);
-    pthread_mutex_unlock(&loop->mutex);
-}
-
-void render_loop_kick(struct render_loop *loop)
-{
-    pthread_mutex_lock(&loop->mutex);
-    changed(loop);
-    pthread_mutex_unlock(&loop->mutex);
 }
 
 const struct device_info *render_loop_device(const struct render_loop *loop) { return &loop->device; }

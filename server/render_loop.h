@@ -1,5 +1,5 @@
 /* The render thread: owns the renderer and its GL context, all of renderer.h is called here. Takes whole view states (newest wins) and
- * snapshots (in order), gives pixels to the encode pool. Never waits for a client, nor for a read-back while there is other work. */
+ * requests (in order), gives pixels to the encode pool. Never waits for a client, nor for a read-back while there is other work. */
 #pragma once
 
 #include <stdbool.h>
@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "encode_pool.h"
+#include "render_request.h"
 #include "stream_view.h"
 
 struct job_pool;
@@ -16,24 +17,12 @@ struct scene_entry;
 
 #define RENDER_LOOP_VIEWS     64
 #define RENDER_LOOP_SNAPSHOTS 16
-
-/* One picture on request, beside the streams. Made and freed by the network thread; in between the render thread only reads it. */
-struct snapshot {
-    struct snapshot *link;
-    struct scene_entry *scene; /* one reference */
-    struct render_settings settings;
-    enum gnmf_codec codec;
-    int quality;
-    uint64_t session;
-    uint32_t request_id;
-    uint64_t deadline_us;   /* clock_us(); 0: none. Not started after it */
-    _Atomic bool cancelled; /* the client is gone */
-};
+#define RENDER_LOOP_COMPARES  4
 
 struct render_loop_options {
     struct renderer_options renderer;
     struct job_pool *pool;        /* outlives the loop */
-    struct encode_pool *encoders; /* likewise; sends back the snapshots too */
+    struct encode_pool *encoders; /* likewise; sends back the requests too */
     struct metrics *metrics;      /* likewise */
     void (*lost)(void *context);  /* called on the render thread when the device is lost for good */
     void *context;
@@ -41,7 +30,7 @@ struct render_loop_options {
 
 /* Starts the thread and waits until its renderer stands. NULL with the renderer's error. */
 struct render_loop *render_loop_create(const struct render_loop_options *options, struct error *err);
-/* Ends the thread: finishes what is in flight, hands waiting snapshots back, destroys the renderer and, of the scenes in `scenes` (linked),
+/* Ends the thread: finishes what is in flight, hands waiting requests back, destroys the renderer and, of the scenes in `scenes` (linked),
  * what lies on the device. The functions below may still be called. */
 void render_loop_stop(struct render_loop *loop, struct scene_entry *scenes);
 /* After render_loop_stop(), with every view closed. Accepts NULL. */
@@ -62,8 +51,8 @@ void render_loop_lost(struct render_loop *loop, uint32_t view, uint64_t frame);
 /* Whether the session's socket has pending writes. */
 void render_loop_blocked(struct render_loop *loop, uint64_t session, bool blocked);
 
-/* Takes the snapshot over; it comes back as an encode job. False (not taken) when RENDER_LOOP_SNAPSHOTS wait. */
-bool render_loop_snapshot(struct render_loop *loop, struct snapshot *snapshot);
+/* Takes the request over; it comes back as an encode job. False (not taken) when RENDER_LOOP_SNAPSHOTS or _COMPARES wait. */
+bool render_loop_request(struct render_loop *loop, struct render_request *request);
 
 /* A copy of the view as it is now, for statistics. False when there is no such view. */
 bool render_loop_view(struct render_loop *loop, uint32_t view, struct stream_view *out);

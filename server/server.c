@@ -6,9 +6,11 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "answer.h"
 #include "dispatch.h"
 #include "http.h"
 #include "methods/methods.h"
+#include "pending.h"
 
 #define FIRST_SCENE         "builtin:box"
 /* One core encodes 1080p at 5.6 ms (libjpeg-turbo, q80): half the threads are plenty beside a renderer. */
@@ -47,7 +49,7 @@ static void on_opened(void *context, uint64_t id, unsigned tag)
         return;
     }
     atomic_fetch_add(&server->metrics.clients, 1);
-    dispatch_notify(server, id, NOTIFY_SERVER_HELLO, hello_params(server, id));
+    rpc_notify(server, id, NOTIFY_SERVER_HELLO, hello_params(server, id));
 }
 
 static void on_message(void *context, uint64_t id, const char *text, size_t size) { dispatch_message(context, id, text, size); }
@@ -55,7 +57,7 @@ static void on_message(void *context, uint64_t id, const char *text, size_t size
 static void on_closed(void *context, uint64_t id)
 {
     struct server *server = context;
-    dispatch_forget(server, id);
+    pending_forget(server, id);
     for (struct view_record *view; (view = sessions_first_view_of(&server->sessions, id));)
         view_close(server, view);
     if (!sessions_find(&server->sessions, id))
@@ -72,9 +74,9 @@ static void on_blocked(void *context, uint64_t id, bool blocked)
 
 static void tell_view_error(struct server *server, const struct encode_job *job)
 {
-    json_t *params = dispatch_error_json(dispatch_code(&job->err), &job->err);
+    json_t *params = rpc_error_json(rpc_code_of(&job->err), &job->err);
     json_object_set_new(params, "view", json_integer(job->header.view));
-    dispatch_notify(server, job->session, NOTIFY_VIEW_ERROR, params);
+    rpc_notify(server, job->session, NOTIFY_VIEW_ERROR, params);
 }
 
 static void send_frame(struct server *server, struct encode_job *job)
@@ -99,8 +101,8 @@ static void take_pictures(struct server *server)
 {
     for (struct encode_job *job = encode_pool_take(server->encoders), *next; job; job = next) {
         next = job->link;
-        if (job->snapshot)
-            dispatch_picture(server, job);
+        if (job->request)
+            pending_answer(server, job);
         else
             send_frame(server, job);
         encode_job_destroy(job);
@@ -111,7 +113,8 @@ static void on_woken(void *context)
 {
     struct server *server = context;
     if (scene_store_settle(server->scenes))
-        dispatch_scenes_ready(server);
+        pending_scenes_ready(server);
+    pending_tell(server);
     take_pictures(server);
 }
 
@@ -122,7 +125,7 @@ static void on_tick(void *context)
     for (struct view_record *view = server->sessions.views; view; view = view->link) {
         json_t *stats = view_stats(server, view, 1.0, &view->frames_told, &view->bytes_told);
         if (stats && net_queued(server->net, view->session) == 0)
-            dispatch_notify(server, view->session, NOTIFY_VIEW_STATS, stats);
+            rpc_notify(server, view->session, NOTIFY_VIEW_STATS, stats);
         else
             json_decref(stats);
     }

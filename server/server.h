@@ -21,6 +21,7 @@ struct call;
 #define SERVER_STREAM_SIDE_MAX     8192 /* pixels; the frame header has 16 bits */
 #define SERVER_STREAM_PIXELS_MAX   (1u << 25)
 #define SERVER_SNAPSHOT_PIXELS_MAX (1u << 26)
+#define SERVER_COMPARE_PIXELS_MAX  (1u << 23)
 
 struct server {
     struct common_options *defaults; /* of every view; borrowed */
@@ -35,7 +36,7 @@ struct server {
     struct metrics metrics;
     struct sessions sessions;
     struct call *waiting;  /* for their scenes */
-    struct call *pictures; /* for their snapshots */
+    struct call *pictures; /* for their requests at the render thread */
     atomic_bool device_lost;
 };
 

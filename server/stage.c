@@ -58,6 +58,8 @@ void *stage_picture(const struct render_settings *settings, struct error *err)
 bool stage_frame(struct stage *stage, const struct render_settings *settings, void *pixels, struct frame_info *info,
                  struct error *err)
 {
+    if (stage->before_frame && !stage->before_frame(stage->context, err))
+        return false;
     if (!renderer_submit(stage->renderer, stage->uploaded, settings, 0, err))
         return false;
     if (renderer_collect(stage->renderer, true, pixels, stage_picture_bytes(settings), info, err))

@@ -15,6 +15,8 @@ struct stage {
     struct job_pool *pool;
     struct renderer *renderer;
     struct render_scene *uploaded;
+    bool (*before_frame)(void *context, struct error *err); /* stage_frame() calls it first; NULL: nothing to do. False stops */
+    void *context;
 };
 
 /* Loads SCENE, then sets up the device: what is wrong with the scene or the options is told before a device is looked for. The caller

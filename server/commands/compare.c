@@ -72,38 +72,6 @@ static const struct syntax syntax = {
                 "  gnomon compare model.glb --algorithm pcf --against sm:size=4096\n",
 };
 
-static json_t *light_rows(const struct stage *stage, const struct comparison *c)
-{
-    json_t *rows = json_array();
-    for (size_t i = 0; i < c->light_count; i++) {
-        const struct light *light = &stage->settings.lights[i];
-        json_t *row = figures_errors(&c->light[i]);
-        json_object_set_new(row, "light", json_integer((json_int_t)i));
-        json_object_set_new(row, "name", json_text(light->name));
-        json_object_set_new(row, "kind", json_string(light_kind_names[light->kind]));
-        json_array_append_new(rows, row);
-    }
-    return rows;
-}
-
-/* Adds what only a comparison has to the figures of the timed frames. */
-static void add_errors(json_t *figures, const struct compare_options *o, const struct stage *stage, const struct comparison *c)
-{
-    static const char *const of_lists[] = {"identified_fraction", "identified_pooled", "texels_over_4"};
-    char against[300];
-    against_format(&o->against, against, sizeof against);
-    json_t *errors = figures_errors(&c->total);
-    json_object_update(figures, errors);
-    json_decref(errors);
-    for (size_t i = 0; i < sizeof of_lists / sizeof of_lists[0]; i++)
-        json_object_set_new(figures, of_lists[i], json_null());
-    json_object_set_new(figures, "against", json_string(against));
-    json_object_set_new(figures, "reference",
-                        json_pack("{s:I, s:I, s:I, s:f}", "rays", (json_int_t)c->counts.rays, "tests",
-                                  (json_int_t)c->counts.tests, "exact", (json_int_t)c->counts.exact, "ms", c->reference_ms));
-    json_object_set_new(figures, "per_light", light_rows(stage, c));
-}
-
 static void print_row(const char *name, const struct metrics *m)
 {
     printf("%-24.24s %10llu %13llu %10.6f %9.6f %7.3f %7llu %7llu %9.2f\n", name, (unsigned long long)m->receivers,
@@ -184,7 +152,7 @@ static bool write_results(const struct compare_options *o, const struct stage *s
     if (o->picture && !write_picture(o, stage, c, err))
         return false;
     if (o->json) {
-        add_errors(*figures, o, stage, c);
+        figures_add_comparison(*figures, &o->against, stage, c);
         json_t *taken = *figures;
         *figures = NULL;
         if (!output_json(o->json, taken, err))
@@ -196,6 +164,12 @@ static bool write_results(const struct compare_options *o, const struct stage *s
     return output_flush(err);
 }
 
+static bool report_progress(void *context, double done)
+{
+    progress_set(context, done);
+    return true;
+}
+
 static bool compare(const struct compare_options *o, struct stage *stage, struct error *err)
 {
     json_t *figures = NULL;
@@ -204,7 +178,8 @@ static bool compare(const struct compare_options *o, struct stage *stage, struct
     if (o->json && !time_frames(o, stage, &figures, err))
         return false;
     progress_init(&progress, "comparing", o->common.quiet);
-    bool good = comparison_run(stage, &o->against, &progress, &c, err);
+    const struct reference_progress report = {report_progress, &progress};
+    bool good = comparison_render(stage, &o->against, &c, err) && comparison_trace(stage, &o->against, &report, &c, err);
     progress_finish(&progress);
     good = good && write_results(o, stage, &c, &figures, err);
     json_decref(figures);

@@ -11,10 +11,11 @@
 
 static json_t *limits(void)
 {
-    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "message_bytes", (int)NET_MESSAGE_MAX, "views",
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "message_bytes", (int)NET_MESSAGE_MAX, "views",
                      SESSION_VIEWS_MAX, "lights", RENDERER_LIGHTS_MAX, "stream_side", SERVER_STREAM_SIDE_MAX, "stream_pixels",
                      (int)SERVER_STREAM_PIXELS_MAX, "snapshot_side", RENDERER_SIZE_MAX, "snapshot_pixels",
-                     (int)SERVER_SNAPSHOT_PIXELS_MAX, "in_flight", STREAM_IN_FLIGHT);
+                     (int)SERVER_SNAPSHOT_PIXELS_MAX, "compare_pixels", (int)SERVER_COMPARE_PIXELS_MAX, "in_flight",
+                     STREAM_IN_FLIGHT);
 }
 
 static json_t *capabilities(const struct server *server)

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "cameras.h"
 #include "common_options.h"
+#include "answer.h"
 #include "dispatch.h"
 #include "output.h"
 #include "server.h"
@@ -89,7 +90,7 @@ static void test_errors(void **state)
     static const enum error_code codes[] = {ERROR_DATA, ERROR_NO_INPUT, ERROR_NO_DEVICE, ERROR_IO, ERROR_TRY_AGAIN, ERROR_BUG};
     for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
         struct error err = {.code = codes[i], .message = "size: too much; 1 to 5 is accepted", .field = "size"};
-        json_t *told = dispatch_error_json(dispatch_code(&err), &err);
+        json_t *told = rpc_error_json(rpc_code_of(&err), &err);
         const json_t *data = json_object_get(told, "data");
         assert_string_equal(json_string_value(json_object_get(data, "field")), "size");
         assert_string_equal(json_string_value(json_object_get(data, "limit")), "1 to 5 is accepted");

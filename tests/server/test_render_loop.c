@@ -64,10 +64,9 @@ static int tear_down(void **state)
     for (size_t i = 0; i < 2; i++)
         for (struct encode_job *job = lists[i], *next; job; job = next) {
             next = job->link;
-            if (job->snapshot) {
-                scene_entry_unref(job->snapshot->scene);
-                free(job->snapshot);
-                job->snapshot = NULL;
+            if (job->request) {
+                render_request_destroy(job->request);
+                job->request = NULL;
             }
             encode_job_destroy(job);
         }
@@ -196,10 +195,9 @@ static void test_blocked_session_costs_nothing(void **state)
     assert_int_equal(take_frame(f).view, 1);
 }
 
-static struct snapshot *make_snapshot(struct fixture *f, uint32_t id)
+static struct render_request *make_snapshot(struct fixture *f, uint32_t id)
 {
-    struct snapshot *snapshot = calloc(1, sizeof *snapshot);
-    snapshot->scene = scene_entry_ref(&f->scene);
+    struct render_request *snapshot = render_request_create(&f->scene);
     snapshot->settings = render_settings_default(f->scene.scene);
     snapshot->codec = GNMF_JPEG;
     snapshot->quality = 80;
@@ -209,9 +207,8 @@ static struct snapshot *make_snapshot(struct fixture *f, uint32_t id)
 
 static void finish_snapshot(struct encode_job *job)
 {
-    scene_entry_unref(job->snapshot->scene);
-    free(job->snapshot);
-    job->snapshot = NULL;
+    render_request_destroy(job->request);
+    job->request = NULL;
     encode_job_destroy(job);
 }
 
@@ -220,17 +217,16 @@ static void test_snapshots_come_in_order_and_are_bounded(void **state)
     struct fixture *f = *state;
     atomic_store(&fake.delay_us, 2000);
     uint32_t taken = 0;
-    struct snapshot *refused = NULL;
+    struct render_request *refused = NULL;
     for (uint32_t id = 1; id <= 200 && !refused; id++) {
-        struct snapshot *snapshot = make_snapshot(f, id);
-        if (render_loop_snapshot(f->loop, snapshot))
+        struct render_request *snapshot = make_snapshot(f, id);
+        if (render_loop_request(f->loop, snapshot))
             taken++;
         else
             refused = snapshot;
     }
     assert_non_null(refused);
-    scene_entry_unref(refused->scene);
-    free(refused);
+    render_request_destroy(refused);
     for (uint32_t i = 0; i < taken; i++) {
         struct encode_job *job = next_job(f, PATIENCE_MS);
         assert_non_null(job);
@@ -243,11 +239,11 @@ static void test_snapshots_come_in_order_and_are_bounded(void **state)
 static void test_late_and_cancelled_snapshots_are_not_rendered(void **state)
 {
     struct fixture *f = *state;
-    struct snapshot *late = make_snapshot(f, 1), *cancelled = make_snapshot(f, 2);
+    struct render_request *late = make_snapshot(f, 1), *cancelled = make_snapshot(f, 2);
     late->deadline_us = 1;
     atomic_store(&cancelled->cancelled, true);
-    assert_true(render_loop_snapshot(f->loop, late));
-    assert_true(render_loop_snapshot(f->loop, cancelled));
+    assert_true(render_loop_request(f->loop, late));
+    assert_true(render_loop_request(f->loop, cancelled));
     for (int i = 0; i < 2; i++) {
         struct encode_job *job = next_job(f, PATIENCE_MS);
         assert_non_null(job);

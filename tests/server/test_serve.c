@@ -192,6 +192,40 @@ static void *stream_client(void *argument)
     return NULL;
 }
 
+/* Reads until the answer to request 2 comes, which holds `wanted`. */
+static void ws_get_answer(int s, const char *wanted)
+{
+    for (;;) {
+        size_t size;
+        bool binary;
+        uint8_t *data = ws_get(s, &size, &binary);
+        bool ours = !binary && strstr((char *)data, "\"id\":2") && !strstr((char *)data, "$/progress");
+        if (ours && !strstr((char *)data, wanted))
+            fail_msg("%s", (char *)data);
+        free(data);
+        if (ours)
+            return;
+    }
+}
+
+/* Compares beside what the others do, and gives every second comparison up. */
+static void *compare_client(void *argument)
+{
+    int s = ws_open(argument);
+    unsigned view = ws_open_view(s);
+    (void)view;
+    for (int i = 0; i < ROUNDS; i++) {
+        ws_put(
+            s,
+            "{\"jsonrpc\":\"2.0\",\"id\":2,\"method\":\"compare.run\",\"params\":{\"size\":[48,32],\"against\":\"samples32\",\"difference\":\"jpeg\"}}");
+        if (i % 2)
+            ws_put(s, "{\"jsonrpc\":\"2.0\",\"id\":3,\"method\":\"$/cancel\",\"params\":{\"id\":2}}");
+        ws_get_answer(s, i % 2 ? "" : "\"receivers\":");
+    }
+    close(s);
+    return NULL;
+}
+
 static void post(const struct fixture *f, const char *body, const char *wanted)
 {
     char request[1024], answer[65536] = "";
@@ -233,11 +267,12 @@ static void test_many_clients(void **state)
 {
     struct fixture *f = *state;
     void *(*const kinds[])(void *) = {stream_client, picture_client, rude_client};
-    pthread_t threads[CLIENTS * 3];
+    pthread_t threads[CLIENTS * 3 + 1];
     atomic_store(&fake.delay_us, 300);
     for (size_t i = 0; i < CLIENTS * 3; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, kinds[i % 3], f), 0);
-    for (size_t i = 0; i < CLIENTS * 3; i++)
+    assert_int_equal(pthread_create(&threads[CLIENTS * 3], NULL, compare_client, f), 0);
+    for (size_t i = 0; i < CLIENTS * 3 + 1; i++)
         pthread_join(threads[i], NULL);
     for (int i = 0; i < 5000 && atomic_load(&f->server.metrics.clients) > 0; i++)
         usleep(1000);
