@@ -104,6 +104,7 @@ export class Charts {
 
   // Without a pointer over the chart its legend tells the newest values.
   private showNewest(chart: uPlot, count: number): void {
-    if (count > 0 && (chart.cursor.left ?? -1) < 0) chart.setLegend({ idx: count - 1 });
+    if (count === 0 || (chart.cursor.left ?? -1) >= 0) return;
+    setTimeout(() => chart.root.isConnected && chart.setLegend({ idx: count - 1 })); // after the redraw that setData began, which empties it
   }
 }

@@ -14,8 +14,11 @@ interface Point {
 
 export const eventUs = (event: Event): number => Math.round((performance.timeOrigin + event.timeStamp) * 1000);
 
-// pointermove waits for the screen's next refresh; pointerrawupdate, where there is one (secure pages of some browsers), does not.
-export const moveEvent = (): "pointerrawupdate" | "pointermove" => ("onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove");
+// pointermove waits for the screen's next refresh; pointerrawupdate, where there is one (secure pages of some browsers, not for every pointer),
+// does not. Who listens to both gets the same place twice.
+export function listenMoves(element: HTMLElement, moved: (event: PointerEvent) => void): void {
+  for (const name of ["pointerrawupdate", "pointermove"]) element.addEventListener(name, moved as EventListener);
+}
 
 const middle = (points: Point[]): Point => ({
   x: points.reduce((sum, p) => sum + p.x, 0) / points.length,
@@ -52,7 +55,7 @@ export function listen(element: HTMLElement, gestures: Gestures): void {
     element.setPointerCapture(event.pointerId);
     down.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
-  element.addEventListener(moveEvent(), move as EventListener);
+  listenMoves(element, move);
   element.addEventListener("pointerup", lift);
   element.addEventListener("pointercancel", lift);
   element.addEventListener("lostpointercapture", lift);

@@ -1,6 +1,6 @@
 // Handles over the picture: one for each light, and one for what a spot is aimed at. Dragged in the plane parallel to the picture, with Shift
 // along the view; focused, the arrow keys do the same.
-import { eventUs, moveEvent } from "./gestures.js";
+import { eventUs, listenMoves } from "./gestures.js";
 import { moveInView, project, withinView } from "./projection.js";
 import type { Light, LookAt, Vec3 } from "./protocol.js";
 import { add, dot, length, scale, unit } from "./vectors.js";
@@ -101,12 +101,12 @@ export class Handles {
       button.setPointerCapture(event.pointerId);
       last = { x: event.clientX, y: event.clientY };
     });
-    button.addEventListener(moveEvent(), ((event: PointerEvent) => {
+    listenMoves(button, (event) => {
       if (!last) return;
       const dx = (event.clientX - last.x) / this.root.clientHeight, dy = (event.clientY - last.y) / this.root.clientHeight;
       last = { x: event.clientX, y: event.clientY };
       if (dx || dy) this.drag(handle, dx, dy, event.shiftKey, eventUs(event));
-    }) as EventListener);
+    });
     const lift = (): void => {
       if (last) this.events.end(handle.index);
       last = undefined;

@@ -4,6 +4,7 @@ import { FLAG_STILL, type Frame } from "./frame.js";
 import { nowUs } from "./client.js";
 import { warp } from "./projection.js";
 import type { LookAt } from "./protocol.js";
+import type { Answer } from "./steering.js";
 import { type FrameTiming, timeFrame } from "./timings.js";
 
 // Up to here a late frame is not noticed; bending costs the machine a composition that the next frame may need.
@@ -14,7 +15,6 @@ export class Picture {
   camera: LookAt | undefined; // of the frame that is shown
   private bent = false;
   private newest = 0;
-  private answered = 0; // input_seq of the newest frame drawn
   private device: [number, number] | undefined; // exact size in device pixels, where the browser tells it
   private readonly context: CanvasRenderingContext2D;
 
@@ -25,7 +25,9 @@ export class Picture {
     this.context = canvas.getContext("2d", { alpha: false })!;
     const observer = new ResizeObserver(([entry]) => {
       const box = entry?.devicePixelContentBoxSize?.[0];
-      this.device = box ? [box.inlineSize, box.blockSize] : undefined;
+      // Emulated screens report CSS pixels here.
+      const plausible = box && Math.abs(box.inlineSize - canvas.clientWidth * devicePixelRatio) < 2;
+      this.device = plausible ? [box.inlineSize, box.blockSize] : undefined;
       resized();
     });
     try {
@@ -49,14 +51,14 @@ export class Picture {
 
   restart(): void {
     this.newest = 0;
-    this.answered = 0;
     this.camera = undefined;
     delete this.canvas.dataset["frame"];
     delete this.canvas.dataset["still"];
   }
 
   // Undefined where a newer frame was drawn first.
-  async show(frame: Frame, cameraOf: () => LookAt | undefined): Promise<FrameTiming | undefined> {
+  async show(frame: Frame, answer: () => Answer): Promise<FrameTiming | undefined> {
+    // Without a GPU, 1280 x 720: 5.4 ms and 0.1 to draw; ImageDecoder 2.2 and 4.6, on the page's own thread; an img element 11.
     const picture = await createImageBitmap(new Blob([frame.payload as BlobPart], { type: `image/${frame.codec}` }));
     const decodedUs = nowUs();
     if (frame.frame <= this.newest) {
@@ -70,15 +72,13 @@ export class Picture {
     this.context.drawImage(picture, 0, 0);
     const drawnUs = nowUs();
     picture.close();
-    this.camera = cameraOf();
+    const { camera, sentUs } = answer();
+    this.camera = camera;
     this.straighten();
     const still = (frame.flags & FLAG_STILL) !== 0;
-    // Only the first frame that shows an input answers it: the age of later ones says nothing.
-    const answers = frame.inputSeq !== this.answered && !still && frame.inputTimeUs > 0;
-    this.answered = frame.inputSeq;
     canvas.dataset["frame"] = String(frame.frame);
     canvas.dataset["still"] = String(still);
-    return timeFrame(frame, decodedUs, drawnUs, answers);
+    return timeFrame(frame, decodedUs, drawnUs, still ? undefined : sentUs);
   }
 
   // Call while a frame is awaited; `waitingMs` is how long the oldest unanswered input waits. False: the picture stays as it is.

@@ -9,6 +9,11 @@ export interface Sender {
   steerLight(index: number, light: Partial<Light>, timeUs: number): number;
 }
 
+export interface Answer {
+  camera: LookAt | undefined;
+  sentUs: number | undefined; // on the page's clock
+}
+
 interface Sent {
   seq: number;
   atMs: number;
@@ -58,10 +63,15 @@ export class Steering {
     this.sent.push({ seq, atMs: performance.now(), camera: this.camera() });
   }
 
-  // The camera of the frame that echoes `seq`; what it answers is forgotten.
-  answer(seq: number): LookAt | undefined {
-    while (this.sent[0] && this.sent[0].seq <= seq) this.shown = this.sent.shift()!.camera;
-    return this.shown;
+  // What the frame that echoes `seq` shows; what it answers is forgotten. `sentUs` only where it is the first to show that input.
+  answer(seq: number): Answer {
+    let sentUs: number | undefined;
+    while (this.sent[0] && this.sent[0].seq <= seq) {
+      const { camera, atMs, seq: own } = this.sent.shift()!;
+      this.shown = camera;
+      if (own === seq) sentUs = Math.round((performance.timeOrigin + atMs) * 1000);
+    }
+    return { camera: this.shown, sentUs };
   }
 
   restart(): void {

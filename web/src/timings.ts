@@ -8,6 +8,8 @@ export interface FrameTiming {
   encodeMs: number;
   decodeMs: number; // from the message's arrival to the picture in memory
   drawMs: number;
+  inputMs: number | null; // from the input's event to its message
+  transferMs: number | null; // from there to the frame's message, without rendering and encoding: sockets and queues
   photonMs: number | null; // from the input's event to the return of the draw call; null: answers no input
   still: boolean;
   inputSeq: number;
@@ -41,7 +43,8 @@ export class Timings {
   }
 }
 
-export function timeFrame(frame: Frame, decodedUs: number, drawnUs: number, answersInput: boolean): FrameTiming {
+export function timeFrame(frame: Frame, decodedUs: number, drawnUs: number, sentUs: number | undefined): FrameTiming {
+  const answers = sentUs !== undefined;
   return {
     frame: frame.frame,
     seconds: performance.now() / 1000,
@@ -49,7 +52,9 @@ export function timeFrame(frame: Frame, decodedUs: number, drawnUs: number, answ
     encodeMs: frame.encodeUs / 1000,
     decodeMs: (decodedUs - frame.receivedUs) / 1000,
     drawMs: (drawnUs - decodedUs) / 1000,
-    photonMs: answersInput ? (drawnUs - frame.inputTimeUs) / 1000 : null,
+    inputMs: answers ? (sentUs - frame.inputTimeUs) / 1000 : null,
+    transferMs: answers ? (frame.receivedUs - sentUs - frame.renderUs - frame.encodeUs) / 1000 : null,
+    photonMs: answers ? (drawnUs - frame.inputTimeUs) / 1000 : null,
     still: (frame.flags & 2) !== 0,
     inputSeq: frame.inputSeq,
     bytes: frame.payload.length,
