@@ -52,7 +52,7 @@ export class Charts {
         cursor: { y: false, drag: { x: false, y: false } },
         legend: { live: true },
         scales: { x: { time: false, range: () => [this.now - SPAN_SECONDS, this.now] }, y: { range: (_, __, max) => [0, Math.max(1, (max || 0) * 1.1)] } },
-        axes: [{ ...axis, size: 20, splits: () => TICKS.map((t) => this.now + t), values: () => TICKS.map((t) => (t ? `${t} s` : "now")) }, { ...axis, size: 46, values: (_, ticks) => ticks.map((t) => `${t} ms`) }],
+        axes: [{ ...axis, size: 20, splits: () => TICKS.map((t) => this.now + t), values: () => TICKS.map((t) => (t ? `${t} s` : "now")) }, { ...axis, size: 46, values: (_, ticks) => ticks.map((t) => (t >= 1000 ? `${t / 1000} s` : `${t} ms`)) }],
         series: [
           { label: "", value: () => "" },
           ...names.map((name, i) => ({ label: name, stroke: styleOf(COLOURS[i % COLOURS.length]!), width: 1.5, spanGaps: true, points: { show: false }, value: (_: uPlot, v: number | null) => (v == null ? "–" : `${v.toFixed(1)} ms`) })),
