@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "scene/scene.h"
 
@@ -151,6 +152,30 @@ static struct scene_entry *unlink_entry(struct scene_store *store, struct scene_
     return entry;
 }
 
+static struct file_stamp stamp_of(const char *source)
+{
+    struct stat info;
+    if (scene_is_builtin(source) || stat(source, &info) != 0)
+        return (struct file_stamp){0};
+    return (struct file_stamp){(int64_t)info.st_mtim.tv_sec * 1000000000 + info.st_mtim.tv_nsec, (int64_t)info.st_size};
+}
+
+static bool same_stamp(struct file_stamp a, struct file_stamp b) { return a.modified_ns == b.modified_ns && a.bytes == b.bytes; }
+
+void scene_store_watch(struct scene_store *store, void (*changed)(void *context, const struct scene_entry *entry, bool removed),
+                       void *context)
+{
+    for (struct scene_entry *entry = store->entries; entry; entry = entry->link) {
+        if (entry->status == SCENE_LOADING || entry->stale)
+            continue;
+        struct file_stamp now = stamp_of(entry->source);
+        entry->stale = !same_stamp(now, entry->loaded) && same_stamp(now, entry->seen);
+        entry->seen = now;
+        if (entry->stale)
+            changed(context, entry, now.modified_ns == 0);
+    }
+}
+
 static struct scene_entry *add_entry(struct scene_store *store, const char *name, const char *source, struct error *err)
 {
     struct scene_entry *entry = calloc(1, sizeof *entry);
@@ -161,6 +186,7 @@ static struct scene_entry *add_entry(struct scene_store *store, const char *name
     }
     snprintf(entry->name, sizeof entry->name, "%s", name);
     entry->status = SCENE_LOADING;
+    entry->loaded = entry->seen = stamp_of(source);
     entry->link = store->entries;
     store->entries = entry;
     store->count++;
@@ -174,7 +200,7 @@ static struct scene_entry *add_entry(struct scene_store *store, const char *name
 static struct scene_entry *find(const struct scene_store *store, const char *name)
 {
     for (struct scene_entry *entry = store->entries; entry; entry = entry->link)
-        if (strcmp(entry->name, name) == 0)
+        if (!entry->stale && strcmp(entry->name, name) == 0)
             return entry;
     return NULL;
 }

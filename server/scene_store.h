@@ -15,18 +15,26 @@ struct scene;
 
 enum scene_status { SCENE_LOADING, SCENE_READY, SCENE_FAILED };
 
+/* What tells one state of a file from another; all zero where there is none. */
+struct file_stamp {
+    int64_t modified_ns;
+    int64_t bytes;
+};
+
 struct scene_entry {
     struct scene_entry *link; /* in the store, or in a list handed out */
     char name[SCENE_NAME_MAX];
-    char *source;               /* what scene_load() takes */
-    enum scene_status status;   /* network thread */
-    struct scene *scene;        /* frozen; valid once READY */
-    struct error err;           /* valid once FAILED */
-    _Atomic unsigned refs;      /* holders beside the store; rises from 0 on the network thread only */
-    uint64_t last_used;         /* network thread: order of use */
-    struct render_scene *gpu;   /* render thread */
-    bool gpu_failed;            /* render thread */
-    struct scene_entry *queued; /* the loader's lists */
+    char *source;                   /* what scene_load() takes */
+    enum scene_status status;       /* network thread */
+    struct scene *scene;            /* frozen; valid once READY */
+    struct error err;               /* valid once FAILED */
+    _Atomic unsigned refs;          /* holders beside the store; rises from 0 on the network thread only */
+    uint64_t last_used;             /* network thread: order of use */
+    struct render_scene *gpu;       /* render thread */
+    bool gpu_failed;                /* render thread */
+    struct scene_entry *queued;     /* the loader's lists */
+    struct file_stamp loaded, seen; /* network thread: of the source when it was asked for, and at the last watch */
+    bool stale;                     /* network thread: the source has changed; not found by name any more */
 };
 
 struct scene_store;
@@ -50,6 +58,11 @@ void scene_entry_destroy(struct scene_entry *entry);            /* render thread
 
 /* Notes finished loads in their entries' status; true when there were any. */
 bool scene_store_settle(struct scene_store *store);
+
+/* Calls `changed` for each scene whose file is not the one loaded any more, once that has been so for two calls in a row (a file may be in the
+ * middle of being written). The next scene_store_get() loads it anew; whoever holds the entry keeps it. */
+void scene_store_watch(struct scene_store *store, void (*changed)(void *context, const struct scene_entry *entry, bool removed),
+                       void *context);
 
 /* Forgets failed loads nobody holds, so that the next request tries again. */
 void scene_store_forget_failed(struct scene_store *store);

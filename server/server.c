@@ -118,10 +118,24 @@ static void on_woken(void *context)
     take_pictures(server);
 }
 
+static void on_scene_changed(void *context, const struct scene_entry *entry, bool removed)
+{
+    struct server *server = context;
+    for (const struct session *session = server->sessions.first; session; session = session->link) {
+        json_t *views = json_array();
+        for (const struct view_record *view = server->sessions.views; view; view = view->link)
+            if (view->session == session->id && view->scene == entry)
+                json_array_append_new(views, json_integer(view->id));
+        rpc_notify(server, session->id, NOTIFY_SCENE_CHANGED,
+                   json_pack("{s:s, s:s, s:o}", "scene", entry->name, "reason", removed ? "removed" : "changed", "views", views));
+    }
+}
+
 /* A client that has not taken the last second's figures does not get this second's. */
 static void on_tick(void *context)
 {
     struct server *server = context;
+    scene_store_watch(server->scenes, on_scene_changed, server);
     for (struct view_record *view = server->sessions.views; view; view = view->link) {
         json_t *stats = view_stats(server, view, 1.0, &view->frames_told, &view->bytes_told);
         if (stats && net_queued(server->net, view->session) == 0)

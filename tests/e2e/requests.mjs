@@ -1,18 +1,24 @@
 // Requests that take a while: comparisons beside a stream, progress, giving up, pictures of every format at their own size.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { WebSocket, inbox, serve, within } from "./support.mjs";
 
-const server = await serve("--scene", "builtin:box", "--size", "64x36");
+const folder = mkdtempSync(join(tmpdir(), "gnomon-e2e-"));
+writeFileSync(join(folder, "shed.gltf"), "{}");
+const server = await serve("--scene", "builtin:box", "--size", "64x36", "--scenes", folder);
 
 async function session() {
-  const socket = new WebSocket(server.wsUrl, "gnomon.v1"), hello = inbox(), frames = inbox(), progress = [], answers = new Map();
+  const socket = new WebSocket(server.wsUrl, "gnomon.v1"), hello = inbox(), frames = inbox(), changes = inbox(), progress = [], answers = new Map();
   socket.on("message", (data, binary) => {
     if (binary) return void frames.push({ kind: data[6], codec: data[7], flags: data.readUInt16LE(8), view: data.readUInt32LE(12), frame: Number(data.readBigUInt64LE(16)), seq: data.readUInt32LE(32),
       width: data.readUInt16LE(36), height: data.readUInt16LE(38), id: data.readUInt32LE(48), reserved: data.subarray(52, 64), payload: data.subarray(64) });
     const message = JSON.parse(data);
     if (message.method === "server.hello") hello.push(message.params);
     else if (message.method === "$/progress") progress.push(message.params);
+    else if (message.method === "scene.changed") changes.push(message.params);
     else if (message.method === undefined) answers.get(message.id)?.(message);
   });
   let last = 0;
@@ -22,7 +28,7 @@ async function session() {
     socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
   }), `answer to ${method}`);
   await hello.next("hello");
-  return { socket, frames, progress, ask, send };
+  return { socket, frames, changes, progress, ask, send };
 }
 
 // The same figures as the command line's, and the difference picture before them.
@@ -98,6 +104,17 @@ for (const [codec, number, magic] of [["webp", 2, "52494646"], ["png", 1, "89504
   assert.equal(Boolean(frame.flags & 4), codec === "png");
   assert.equal(frame.payload.subarray(0, magic.length / 2).toString("hex"), magic);
 }
+
+// A file that changes is told of, and read anew by who asks again.
+const small = '{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"camera":0}],"cameras":[{"name":"first","type":"perspective","perspective":{"yfov":1,"znear":0.1}}]}';
+writeFileSync(join(folder, "shed.gltf"), small);
+const shed = await a.ask("view.open", { scene: "shed.gltf", size: [32, 18] });
+assert.equal(shed.error, undefined, shed.error?.message);
+writeFileSync(join(folder, "shed.gltf"), small.replace("first", "second"));
+const told = await a.changes.next("scene.changed");
+assert.deepEqual(told, { scene: "shed.gltf", reason: "changed", views: [shed.result.view] });
+assert.deepEqual((await b.changes.next("scene.changed")).views, []);
+assert.equal((await a.ask("scene.describe", { scene: "shed.gltf" })).result.cameras[0].name, "second");
 
 // Too many at once are told so, not kept.
 const many = await Promise.all(Array.from({ length: 8 }, () => a.ask("compare.run", { ...params, size: [64, 36], difference: undefined })));
