@@ -1,7 +1,7 @@
 // The page: one canvas, one view, its lights, a panel, figures.
 import { Charts } from "./charts.js";
 import {
-  type Client, type Frame, type Hello, type Light, type LightKind, type LightsResult, type LookAt, nowUs, RpcError, type SceneInfo, type ViewInfo,
+  type Client, type Frame, type Hello, type Light, type LightKind, type LightsResult, type LookAt, nowUs, type Progress, RpcError, type SceneInfo, type ViewInfo,
   type ViewSettings,
 } from "./client.js";
 import { Connection } from "./connection.js";
@@ -301,8 +301,8 @@ class App {
 
   private notified(method: string, params: unknown): void {
     if (method !== "$/progress") return;
-    const { message, text } = params as { message?: string; text?: string };
-    if (message ?? text) this.messages.note((message ?? text)!, true);
+    const { stage, done } = params as Progress;
+    if (this.messages.waiting) this.messages.note(`${stage[0]?.toUpperCase()}${stage.slice(1)} …${done ? ` ${Math.round(100 * done)} %` : ""}`, true);
   }
 
   private showLights(lights: Light[]): void {

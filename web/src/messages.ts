@@ -5,6 +5,7 @@ import type { Status } from "./connection.js";
 const NOTE_MS = 5000;
 
 export class Messages {
+  waiting = false;
   private hide: ReturnType<typeof setTimeout> | undefined;
   private countdown: ReturnType<typeof setInterval> | undefined;
   private readonly text: HTMLElement;
@@ -20,19 +21,23 @@ export class Messages {
     message.querySelector("button")!.addEventListener("click", () => this.clear());
   }
 
+  // A note that is kept stands for something that goes on.
   note(text: string, keep = false): void {
     this.show(text, "", false);
+    this.waiting = keep;
     if (!keep) this.hide = setTimeout(() => this.clear(), NOTE_MS);
   }
 
   // Stays until dismissed or until something works.
   error(error: unknown): void {
     const field = error instanceof RpcError ? (error.data?.field ?? "") : "";
+    this.waiting = false;
     this.show(error instanceof Error ? error.message : String(error), field, true);
   }
 
   clear(): void {
     clearTimeout(this.hide);
+    this.waiting = false;
     this.message.hidden = true;
   }
 
