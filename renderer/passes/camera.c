@@ -20,7 +20,7 @@ bool camera_rasterize(struct gbuffer *g, struct draw_scene *scene, struct error 
         return false;
     g->traced = g->pixels_done = false;
     g->ids_uploaded = true;
-    if (!tiles_set_all(&g->tiles, scene->gl, height, err))
+    if (!tiles_set_all(&g->tiles, width, height, err))
         return false;
     gl_target_attach(&g->target, &g->ids, &g->depth, 0);
     gl_target_bind(&g->target, width, height);
@@ -52,7 +52,7 @@ bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct trac
     g->ids_uploaded = false;
     g->pixels_done = scene->plain;
     tracer_camera(tracer, &g->view.view, pool, g->cpu_ids, scene->plain ? g->cpu_pixels : NULL);
-    if (!tiles_set_occupied(&g->tiles, scene->gl, g->cpu_ids, g->ids.width, g->ids.height, pool, err))
+    if (!tiles_set_occupied(&g->tiles, g->cpu_ids, g->ids.width, g->ids.height, pool, err))
         return false;
     if (scene->plain && g->tiles.count)
         glTextureSubImage2D(g->pixels.id, 0, 0, (GLint)g->tiles.top, (GLsizei)g->ids.width, (GLsizei)(g->tiles.bottom - g->tiles.top),
@@ -67,7 +67,7 @@ bool camera_surfaces(struct gbuffer *g, struct draw_scene *scene, struct error *
     char defines[64];
     snprintf(defines, sizeof defines, "DISPLAY 0\n%s%s%s", scene->scene->texture_count ? "TEXTURES\n" : "",
              scene->scene->color_count ? "COLORS\n" : "", scene->has_emission ? "EMISSION\n" : "");
-    struct gl_program *program = gl_programs_get(scene->gl->programs, "tiles.vert", "surfaces.frag", defines, err);
+    struct gl_program *program = gl_programs_get(scene->gl->programs, "full_screen.vert", "surfaces.frag", defines, err);
     if (!program || !gbuffer_need_ids(g, scene->gl, err))
         return false;
     gl_target_attach_two(&g->target, &g->pixels, scene->has_emission ? &g->emission : NULL);
@@ -76,7 +76,7 @@ bool camera_surfaces(struct gbuffer *g, struct draw_scene *scene, struct error *
     gbuffer_bind(g, scene);
     static const GLuint nothing[4];
     glClearNamedFramebufferuiv(g->target.id, GL_COLOR, 0, nothing);
-    tiles_draw(&g->tiles);
+    tiles_draw(&g->tiles, scene->vertex_array);
     g->pixels_done = true;
     return gl_check(scene->gl, err);
 }

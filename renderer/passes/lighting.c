@@ -83,7 +83,7 @@ static struct gl_program *lighting_program(const struct lighting_input *in, stru
     char defines[160];
     snprintf(defines, sizeof defines, "SHOW %d\nDISPLAY %d\nLIGHTS %zu\nKINDS %d\nRESOLVE_LATER %d\n%s", in->show, display_of(in),
              in->light_count, common_kind(in), in->aa_side > 1, in->scene->has_emission ? "EMISSION\n" : "");
-    return gl_programs_get(in->scene->gl->programs, "tiles.vert", "lighting.frag", defines, err);
+    return gl_programs_get(in->scene->gl->programs, "full_screen.vert", "lighting.frag", defines, err);
 }
 
 static bool downsample(struct lighting *l, const struct lighting_input *in, struct error *err)
@@ -125,7 +125,7 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
     gl_texture_bind(in->visibility, UNIT_VISIBILITY);
     glBindBufferBase(GL_UNIFORM_BUFFER, 5, l->block.id);
     glClearNamedFramebufferfv(l->target.id, GL_COLOR, 0, many ? nothing : background_of(in));
-    tiles_draw(&in->gbuffer->tiles);
+    tiles_draw(&in->gbuffer->tiles, in->scene->vertex_array);
     return (!many || downsample(l, in, err)) && gl_check(gl, err);
 }
 

@@ -15,12 +15,12 @@ bool shadow_run_full_screen(const struct shadow_input *in, const char *fragment,
 {
     char all[256];
     snprintf(all, sizeof all, "LIGHT %d\n%s", (int)in->light->kind, defines ? defines : "");
-    struct gl_program *program = gl_programs_get(in->gl->programs, "tiles.vert", fragment, all, err);
+    struct gl_program *program = gl_programs_get(in->gl->programs, "full_screen.vert", fragment, all, err);
     if (!program)
         return false;
     gl_program_use(program);
     gbuffer_bind(in->gbuffer, in->draw);
-    tiles_draw(&in->gbuffer->tiles);
+    tiles_draw(&in->gbuffer->tiles, in->draw->vertex_array);
     return gl_check(in->gl, err);
 }
 
