@@ -99,7 +99,7 @@ void dispatch_message(struct server *server, uint64_t session, const char *text,
 {
     struct error err = {0};
     json_error_t where;
-    json_t *message = json_loadb(text, size, JSON_REJECT_DUPLICATES, &where);
+    json_t *message = json_loadb(text, size, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &where);
     json_t *id = json_is_object(message) ? json_object_get(message, "id") : NULL;
     const struct method *method = NULL;
     if (!message) {
@@ -130,7 +130,7 @@ void dispatch_render(struct server *server, uint64_t request, const char *allow_
 {
     struct error err = {0};
     json_error_t where;
-    json_t *params = json_loadb(text, size, JSON_REJECT_DUPLICATES, &where);
+    json_t *params = json_loadb(text, size, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &where);
     struct call *call = params ? calloc(1, sizeof *call) : NULL;
     if (!call) {
         error_set(&err, ERROR_USAGE, "",

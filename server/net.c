@@ -581,7 +581,8 @@ static struct lws_context *make_context(struct net *net, const char *host, unsig
         .port = (int)port,
         .iface = any ? NULL : host,
         .protocols = net->protocols,
-        .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | (strchr(host, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
+        .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_VALIDATE_UTF8 |
+                   (strchr(host, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
         .user = net,
         .gid = -1,
         .uid = -1,

@@ -1,10 +1,10 @@
-// What one client may do to another: a flood of view.set, and a client that stops reading. No timed asserts; SECONDS (default 2) says how long each
-// part runs, and the figures are printed: `SECONDS=60 sh tests/e2e/node.sh build/release flood.mjs`, or `./dev soak`.
+// What one client may do to another: a flood of view.set, and a client that stops reading. No timed asserts; SECONDS_EACH (default 2) says how long each
+// part runs, and the figures are printed: `SECONDS_EACH=60 sh tests/e2e/node.sh build/release flood.mjs`, or `./dev soak`.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { WebSocket, inbox, serve, sleep } from "./support.mjs";
 
-const seconds = Number(process.env.SECONDS ?? 2), FLOOD_PER_SECOND = 1000;
+const seconds = Number(process.env.SECONDS_EACH ?? 2), FLOOD_PER_SECOND = 1000;
 const server = await serve("--scene", "builtin:box", "--size", "160x90");
 const rss = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.pid}/status`, "utf8"))[1]) / 1024;
 
