@@ -10,8 +10,8 @@
 #include "passes/camera.h"
 #include "render_scene.h"
 
-_Static_assert((int)SHOW_SHADED == LIGHTING_SHADED && (int)SHOW_VISIBILITY == LIGHTING_VISIBILITY && (int)SHOW_DEPTH == LIGHTING_DEPTH &&
-                   (int)SHOW_NORMAL == LIGHTING_NORMAL && (int)SHOW_ID == LIGHTING_ID,
+_Static_assert((int)SHOW_SHADED == LIGHTING_SHADED && (int)SHOW_VISIBILITY == LIGHTING_VISIBILITY &&
+                   (int)SHOW_DEPTH == LIGHTING_DEPTH && (int)SHOW_NORMAL == LIGHTING_NORMAL && (int)SHOW_ID == LIGHTING_ID,
                "enum show and enum lighting_show");
 _Static_assert(RENDERER_LIGHTS_MAX == LIGHTS_MAX && SHADOW_MAPS_MAX == MAPS_MAX && SHADOW_PARAM_MAX <= 16, "blocks.h");
 
@@ -20,8 +20,8 @@ static void mark(struct renderer *r, enum render_pass pass, struct frame_info *i
     info->pass_ms[pass] = gl_timer_mark(&r->timer, pass);
 }
 
-static bool run_camera(struct renderer *r, struct render_scene *s, const struct render_settings *settings, struct frame_info *info,
-                       struct error *err)
+static bool run_camera(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
+                       struct frame_info *info, struct error *err)
 {
     size_t pixels = (size_t)r->gbuffer.view.view.width * r->gbuffer.view.view.height;
     info->traced_camera = settings->camera_pass == CAMERA_PASS_AUTO ? producer_traces_camera(&s->draw, pixels)
@@ -66,7 +66,8 @@ static bool traces_maps(const struct render_scene *s, const struct render_settin
                                                   : settings->map_pass == CAMERA_PASS_TRACED;
 }
 
-static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings, unsigned light)
+static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
+                                     unsigned light)
 {
     return (struct shadow_input){
         .scene = s->scene,
@@ -92,7 +93,8 @@ static bool prepare_lights(struct renderer *r, struct render_scene *s, const str
     memset(s->current, 0, sizeof s->current);
     for (unsigned i = 0; i < settings->light_count; i++) {
         inputs[i] = input_for(r, s, settings, i);
-        s->current[i] = light_states_get(&s->states, &s->fit, settings->system, &settings->params, &inputs[i], &info->prepared, err);
+        s->current[i] =
+            light_states_get(&s->states, &s->fit, settings->system, &settings->params, &inputs[i], &info->prepared, err);
         if (!s->current[i])
             return false;
     }
@@ -134,7 +136,9 @@ static bool run_lighting(struct renderer *r, struct render_scene *s, const struc
         .lights = settings->lights,
         .light_count = settings->light_count,
         .show = (enum lighting_show)settings->show,
-        .display = settings->format == PIXELS_RGBA32F ? LIGHTING_LINEAR : plain ? LIGHTING_SRGB : LIGHTING_ACES,
+        .display = settings->format == PIXELS_RGBA32F ? LIGHTING_LINEAR
+                   : plain                            ? LIGHTING_SRGB
+                                                      : LIGHTING_ACES,
         .exposure = settings->exposure_auto ? automatic : exp2(settings->exposure_ev),
         .ambient = settings->ambient * (lux > 0 ? lux / M_PI : 1),
         .aa_side = aa_side,
@@ -168,9 +172,9 @@ bool frame_render(struct renderer *r, struct render_scene *s, const struct rende
     struct view view = view_from_camera(&settings->camera, settings->width * aa_side, settings->height * aa_side);
     struct shadow_input inputs[RENDERER_LIGHTS_MAX];
     gl_timer_begin(&r->timer, settings->finish_each_pass);
-    bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, err) &&
-              run_camera(r, s, settings, info, err) && prepare_lights(r, s, settings, inputs, info, err) &&
-              resolve_lights(r, s, settings, inputs, info, err) && run_lighting(r, s, settings, aa_side, info, err);
+    bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, err) && run_camera(r, s, settings, info, err) &&
+              prepare_lights(r, s, settings, inputs, info, err) && resolve_lights(r, s, settings, inputs, info, err) &&
+              run_lighting(r, s, settings, aa_side, info, err);
     if (ok)
         describe_lights(s, settings, info);
     return ok;

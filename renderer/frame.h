@@ -13,8 +13,8 @@ struct render_scene;
 
 struct in_flight {
     struct frame_info info;
-    double start_ms;       /* clock at renderer_submit() */
-    unsigned timer_age;    /* frames submitted since */
+    double start_ms;    /* clock at renderer_submit() */
+    unsigned timer_age; /* frames submitted since */
     bool finish_each_pass;
 };
 
@@ -26,12 +26,12 @@ struct renderer {
     struct gl_timer timer;
     struct gl_readback readback;
     struct gbuffer gbuffer;
-    struct gl_texture visibility;  /* R32F, a layer a light */
+    struct gl_texture visibility; /* R32F, a layer a light */
     struct gl_target visibility_target;
     struct gl_buffer light_block, params_block;
     struct lighting lighting;
     struct in_flight frames[RENDERER_IN_FLIGHT];
-    unsigned first, count;         /* oldest in flight, how many */
+    unsigned first, count; /* oldest in flight, how many */
     double reload_checked_ms;
 };
 

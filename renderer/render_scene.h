@@ -12,8 +12,8 @@ struct render_scene {
     struct draw_scene draw;
     struct fit_geometry fit;
     struct light_states states;
-    struct tracer *tracer;       /* made when first asked for */
-    struct reference *reference; /* likewise */
+    struct tracer *tracer;                            /* made when first asked for */
+    struct reference *reference;                      /* likewise */
     struct light_state *current[RENDERER_LIGHTS_MAX]; /* the last frame's, one a light */
 };
 

@@ -95,8 +95,8 @@ static bool check_settings(const struct render_settings *s, struct error *err)
 {
     unsigned side = s->aa == 16 ? 4 : s->aa == 4 ? 2 : 1, limit = RENDERER_SIZE_MAX / side;
     if (s->width < 1 || s->height < 1 || s->width > limit || s->height > limit)
-        return error_set(err, ERROR_USAGE, "size", "a picture of %u x %u with %u samples a pixel is not possible: 1 to %u a side", s->width,
-                         s->height, s->aa, limit);
+        return error_set(err, ERROR_USAGE, "size", "a picture of %u x %u with %u samples a pixel is not possible: 1 to %u a side",
+                         s->width, s->height, s->aa, limit);
     for (size_t i = 0; i < s->light_count; i++)
         if (!(s->system->lights & 1u << s->lights[i].kind))
             return error_set(err, ERROR_USAGE, "algorithm", "%s casts no shadows from this kind of light", s->system->name);
@@ -116,8 +116,8 @@ static void reload_shaders(struct renderer *r, struct render_scene *s)
 static bool start_readback(struct renderer *r, const struct render_settings *settings, struct frame_info *info, struct error *err)
 {
     bool wide = settings->format == PIXELS_RGBA32F;
-    bool ok = gl_readback_start(&r->readback, &r->gl, settings->width, settings->height, GL_RGBA, wide ? GL_FLOAT : GL_UNSIGNED_BYTE,
-                                wide ? 16 : 4, err);
+    bool ok = gl_readback_start(&r->readback, &r->gl, settings->width, settings->height, GL_RGBA,
+                                wide ? GL_FLOAT : GL_UNSIGNED_BYTE, wide ? 16 : 4, err);
     info->pass_ms[PASS_READBACK] = gl_timer_mark(&r->timer, PASS_READBACK);
     return ok;
 }

@@ -27,15 +27,15 @@ enum pixel_format {
 };
 
 #define RENDERER_LIGHTS_MAX 16
-#define RENDERER_SIZE_MAX 16384   /* pixels a side */
-#define RENDERER_IN_FLIGHT 3      /* frames submitted and not yet collected */
+#define RENDERER_SIZE_MAX   16384 /* pixels a side */
+#define RENDERER_IN_FLIGHT  3     /* frames submitted and not yet collected */
 
 struct renderer_options {
-    const char *device;      /* index in renderer_list_devices(), DRM node path, "software", or NULL: first that works */
-    const char *shader_dir;  /* read shaders from here and reload them when they change; NULL: the built-in ones */
-    const char *cache_dir;   /* program binaries; NULL: $XDG_CACHE_HOME/gnomon or ~/.cache/gnomon; "": no cache */
-    unsigned threads;        /* >= 1; bounds the GL software rasterizer (LP_NUM_THREADS, set before the first context) and the tracer */
-    bool gl_debug;           /* GL debug messages to the log */
+    const char *device;     /* index in renderer_list_devices(), DRM node path, "software", or NULL: first that works */
+    const char *shader_dir; /* read shaders from here and reload them when they change; NULL: the built-in ones */
+    const char *cache_dir;  /* program binaries; NULL: $XDG_CACHE_HOME/gnomon or ~/.cache/gnomon; "": no cache */
+    unsigned threads; /* >= 1; bounds the GL software rasterizer (LP_NUM_THREADS, set before the first context) and the tracer */
+    bool gl_debug;    /* GL debug messages to the log */
 };
 
 /* Errors: ERROR_NO_DEVICE naming each attempt and why it failed. `pool` must outlive the renderer. */
@@ -52,23 +52,23 @@ struct render_scene *render_scene_create(struct renderer *r, const struct scene 
 void render_scene_destroy(struct render_scene *s);
 
 struct render_settings {
-    uint32_t width, height;        /* pixels of the result, 1..RENDERER_SIZE_MAX */
-    struct camera camera;          /* scene space */
+    uint32_t width, height;                   /* pixels of the result, 1..RENDERER_SIZE_MAX */
+    struct camera camera;                     /* scene space */
     struct light lights[RENDERER_LIGHTS_MAX]; /* scene space */
     size_t light_count;
     const struct shadow_system *system;
     struct shadow_params params;
     enum show show;
-    bool exposure_auto;            /* from the lights and the scene's size alone */
-    double exposure_ev;            /* picture = radiance * 2^ev, when not auto */
-    double ambient;                /* fraction of white ambient radiance, >= 0 */
+    bool exposure_auto; /* from the lights and the scene's size alone */
+    double exposure_ev; /* picture = radiance * 2^ev, when not auto */
+    double ambient;     /* fraction of white ambient radiance, >= 0 */
     enum tonemap tonemap;
-    unsigned aa;                   /* samples a pixel: 1, 4 or 16 */
+    unsigned aa; /* samples a pixel: 1, 4 or 16 */
     enum camera_pass camera_pass;
-    enum camera_pass map_pass;     /* the same choice for depth maps from lights */
+    enum camera_pass map_pass; /* the same choice for depth maps from lights */
     enum pixel_format format;
-    uint32_t viewer;               /* whose picture: a light that moves takes along what was built for it, but only from its own viewer */
-    bool finish_each_pass;         /* waits after each pass so that pass times are true on any device */
+    uint32_t viewer;       /* whose picture: a light that moves takes along what was built for it, but only from its own viewer */
+    bool finish_each_pass; /* waits after each pass so that pass times are true on any device */
 };
 
 struct render_settings render_settings_default(const struct scene *scene);
@@ -77,18 +77,18 @@ enum render_pass { PASS_CAMERA, PASS_RECEIVERS, PASS_PREPARE, PASS_RESOLVE, PASS
 extern const char *const render_pass_names[PASS_COUNT]; /* "camera", ... */
 
 struct frame_info {
-    uint64_t token;                /* as given to renderer_submit() */
+    uint64_t token; /* as given to renderer_submit() */
     uint32_t width, height;
     enum pixel_format format;
-    double pass_ms[PASS_COUNT];    /* wall times with finish_each_pass, else GPU timer queries (0 where those are not in yet) */
-    double frame_ms;               /* from renderer_submit() to the pixels in CPU memory */
-    bool prepared;                 /* some light's shadow structure was rebuilt */
-    bool traced_camera;            /* which producer made the ids */
-    size_t shadow_bytes;           /* over all lights */
-    unsigned map_count;            /* maps of the first light, 0 if none */
+    double pass_ms[PASS_COUNT]; /* wall times with finish_each_pass, else GPU timer queries (0 where those are not in yet) */
+    double frame_ms;            /* from renderer_submit() to the pixels in CPU memory */
+    bool prepared;              /* some light's shadow structure was rebuilt */
+    bool traced_camera;         /* which producer made the ids */
+    size_t shadow_bytes;        /* over all lights */
+    unsigned map_count;         /* maps of the first light, 0 if none */
     uint32_t map_size;
     double map_fov_deg[SHADOW_MAPS_MAX];
-    size_t map_count_total;        /* over all lights */
+    size_t map_count_total; /* over all lights */
 };
 
 /* Starts a frame; does not wait for the GPU. At most RENDERER_IN_FLIGHT may be uncollected (ERROR_TRY_AGAIN past that).

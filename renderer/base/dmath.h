@@ -43,10 +43,7 @@ static inline struct dvec3 dvec3_normalize(struct dvec3 a)
 }
 static inline bool dvec3_finite(struct dvec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
 
-static inline struct affine affine_identity(void)
-{
-    return (struct affine){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
-}
+static inline struct affine affine_identity(void) { return (struct affine){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}}; }
 static inline struct dvec3 affine_direction(const struct affine *a, struct dvec3 v)
 {
     return dvec3(a->linear[0][0] * v.x + a->linear[0][1] * v.y + a->linear[0][2] * v.z,
@@ -73,8 +70,8 @@ static inline struct affine affine_multiply(const struct affine *a, const struct
         for (int j = 0; j < 3; j++)
             r.linear[i][j] =
                 a->linear[i][0] * b->linear[0][j] + a->linear[i][1] * b->linear[1][j] + a->linear[i][2] * b->linear[2][j];
-        r.offset[i] = a->linear[i][0] * b->offset[0] + a->linear[i][1] * b->offset[1] + a->linear[i][2] * b->offset[2] +
-                      a->offset[i];
+        r.offset[i] =
+            a->linear[i][0] * b->offset[0] + a->linear[i][1] * b->offset[1] + a->linear[i][2] * b->offset[2] + a->offset[i];
     }
     return r;
 }

@@ -106,8 +106,7 @@ void job_pool_destroy(struct job_pool *pool)
 
 unsigned job_pool_threads(const struct job_pool *pool) { return pool->thread_count + 1; }
 
-void job_pool_for(struct job_pool *pool, size_t count, void (*run)(void *context, size_t index, unsigned worker),
-                  void *context)
+void job_pool_for(struct job_pool *pool, size_t count, void (*run)(void *context, size_t index, unsigned worker), void *context)
 {
     if (count == 0)
         return;

@@ -18,5 +18,4 @@ unsigned job_pool_threads(const struct job_pool *pool);
 /* Calls run(context, index, worker) for every index in [0, count), in no fixed order, each once; returns when all are
  * done. The caller works too. `worker` is in [0, job_pool_threads) and never shared by two calls at the same time within
  * one loop. May be called from several threads at once; not from inside `run`. */
-void job_pool_for(struct job_pool *pool, size_t count, void (*run)(void *context, size_t index, unsigned worker),
-                  void *context);
+void job_pool_for(struct job_pool *pool, size_t count, void (*run)(void *context, size_t index, unsigned worker), void *context);

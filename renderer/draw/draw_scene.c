@@ -139,7 +139,8 @@ static bool upload_textures(struct draw_scene *d, struct error *err)
     struct packed_texels packed;
     if (!pack_texels(&packed, d->scene, (size_t)d->gl->caps.max_texture_buffer, err))
         return false;
-    bool ok = gl_buffer_set(&d->textures, d->gl, packed.textures, d->scene->texture_count * sizeof *packed.textures, GL_RGBA32UI, err) &&
+    bool ok = gl_buffer_set(&d->textures, d->gl, packed.textures, d->scene->texture_count * sizeof *packed.textures, GL_RGBA32UI,
+                            err) &&
               gl_buffer_set(&d->texels, d->gl, packed.texels, packed.texel_count * sizeof *packed.texels, GL_R32UI, err);
     packed_texels_finish(&packed);
     return ok;
@@ -147,7 +148,8 @@ static bool upload_textures(struct draw_scene *d, struct error *err)
 
 static bool emits(const struct material *m)
 {
-    return m->unlit || m->emissive[0] > 0 || m->emissive[1] > 0 || m->emissive[2] > 0 || m->occlusion_texture.texture != SCENE_NONE;
+    return m->unlit || m->emissive[0] > 0 || m->emissive[1] > 0 || m->emissive[2] > 0 ||
+           m->occlusion_texture.texture != SCENE_NONE;
 }
 
 static void classify(struct draw_scene *d)
@@ -215,8 +217,8 @@ bool draw_scene_need_indices(struct draw_scene *d, struct error *err)
 void draw_scene_finish(struct draw_scene *d)
 {
     glDeleteVertexArrays(d->vertex_array != 0, &d->vertex_array);
-    struct gl_buffer *buffers[] = {&d->vertices, &d->triangles, &d->instances, &d->texcoords, &d->colors,
-                                   &d->materials, &d->textures, &d->texels, &d->indices, &d->instance_numbers};
+    struct gl_buffer *buffers[] = {&d->vertices,  &d->triangles, &d->instances, &d->texcoords, &d->colors,
+                                   &d->materials, &d->textures,  &d->texels,    &d->indices,   &d->instance_numbers};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gl_buffer_finish(buffers[i]);
     memset(d, 0, sizeof *d);

@@ -16,11 +16,11 @@ struct draw_scene {
     const struct scene *scene;
     struct gl_context *gl;
     struct gl_buffer vertices, triangles, instances, texcoords, colors, materials, textures, texels;
-    struct gl_buffer indices;         /* element buffer; made by draw_scene_need_indices() */
+    struct gl_buffer indices;          /* element buffer; made by draw_scene_need_indices() */
     struct gl_buffer instance_numbers; /* 0, 1, 2, ...: a per-instance attribute, since 4.5 has no gl_BaseInstance */
     unsigned vertex_array;
-    bool has_emission;                /* some material emits light, is unlit, or has an occlusion texture */
-    bool plain;                       /* no textures, no emission: a struct pixel follows from a hit without sampling anything */
+    bool has_emission; /* some material emits light, is unlit, or has an occlusion texture */
+    bool plain;        /* no textures, no emission: a struct pixel follows from a hit without sampling anything */
     size_t bytes;
 };
 

@@ -124,8 +124,8 @@ static void fill_commands(const struct draw_view *v, const struct scene *s, enum
     starts[BUCKET_COUNT] = n;
 }
 
-static bool draw_bucket(const struct draw_view *v, const struct draw_scene *d, enum draw_what what,
-                        unsigned bucket, size_t first, size_t count, struct error *err)
+static bool draw_bucket(const struct draw_view *v, const struct draw_scene *d, enum draw_what what, unsigned bucket, size_t first,
+                        size_t count, struct error *err)
 {
     char defines[128];
     snprintf(defines, sizeof defines, "%s%s%sHAS_TEXCOORDS %d\nHAS_COLORS %d\n", what == DRAW_IDS ? "IDS\n" : "",
@@ -139,12 +139,12 @@ static bool draw_bucket(const struct draw_view *v, const struct draw_scene *d, e
     glFrontFace(GL_CW);
     glCullFace(bucket & BUCKET_CULL_FRONT ? GL_FRONT : GL_BACK);
     (bucket & (BUCKET_CULL_FRONT | BUCKET_CULL_BACK) ? glEnable : glDisable)(GL_CULL_FACE);
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, (const char *)0 + first * sizeof(struct command), (GLsizei)count, 0);
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, (const char *)0 + first * sizeof(struct command), (GLsizei)count,
+                                0);
     return true;
 }
 
-static bool draw_buckets(struct draw_view *v, struct draw_scene *d, enum draw_what what,
-                         const size_t starts[], struct error *err)
+static bool draw_buckets(struct draw_view *v, struct draw_scene *d, enum draw_what what, const size_t starts[], struct error *err)
 {
     bool ok = true;
     bool far = !v->view.orthographic && !isinf(v->view.far);
@@ -167,8 +167,8 @@ static bool draw_buckets(struct draw_view *v, struct draw_scene *d, enum draw_wh
     return ok && gl_check(d->gl, err);
 }
 
-bool draw_view_rasterize(struct draw_view *v, struct draw_scene *d, enum draw_what what,
-                         const uint32_t *instances, size_t instance_count, struct error *err)
+bool draw_view_rasterize(struct draw_view *v, struct draw_scene *d, enum draw_what what, const uint32_t *instances,
+                         size_t instance_count, struct error *err)
 {
     size_t count = instances ? instance_count : d->scene->instance_count, starts[BUCKET_COUNT + 1];
     struct command *commands = malloc((count + 1) * sizeof *commands);

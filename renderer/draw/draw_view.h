@@ -29,5 +29,5 @@ enum draw_what {
 
 /* Rasterizes `instances` (ascending; NULL: all) into the bound framebuffer, culling those outside the view. Depth is reversed: near / depth
  * in perspective, (far - depth) / (far - near) in orthographic; the caller cleared it to 0. */
-bool draw_view_rasterize(struct draw_view *v, struct draw_scene *scene, enum draw_what what,
-                         const uint32_t *instances, size_t instance_count, struct error *err);
+bool draw_view_rasterize(struct draw_view *v, struct draw_scene *scene, enum draw_what what, const uint32_t *instances,
+                         size_t instance_count, struct error *err);

@@ -67,7 +67,8 @@ bool pack_texels(struct packed_texels *out, const struct scene *scene, size_t ma
         bool too_many = firsts && !fits;
         free(firsts);
         packed_texels_finish(out);
-        return too_many ? error_set(err, ERROR_TRY_AGAIN, NULL, "the scene's images have more texels than this device reads (%zu)", max_texels)
+        return too_many ? error_set(err, ERROR_TRY_AGAIN, NULL,
+                                    "the scene's images have more texels than this device reads (%zu)", max_texels)
                         : error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for the scene's images");
     }
     for (size_t i = 0; i < scene->image_count; i++)

@@ -10,8 +10,9 @@ static bool make(struct gl_buffer *b, struct gl_context *gl, size_t size, unsign
 {
     gl_buffer_finish(b);
     if (texel_format && size / texel_bytes(texel_format) > (size_t)gl->caps.max_texture_buffer)
-        return error_set(err, ERROR_TRY_AGAIN, NULL, "the scene needs a buffer of %zu bytes; this device reads at most %zu in one",
-                         size, (size_t)gl->caps.max_texture_buffer * texel_bytes(texel_format));
+        return error_set(err, ERROR_TRY_AGAIN, NULL,
+                         "the scene needs a buffer of %zu bytes; this device reads at most %zu in one", size,
+                         (size_t)gl->caps.max_texture_buffer * texel_bytes(texel_format));
     glCreateBuffers(1, &b->id);
     glNamedBufferStorage(b->id, (GLsizeiptr)size, NULL, GL_DYNAMIC_STORAGE_BIT);
     if (texel_format) {
@@ -26,7 +27,8 @@ static bool make(struct gl_buffer *b, struct gl_context *gl, size_t size, unsign
     return true;
 }
 
-bool gl_buffer_set(struct gl_buffer *b, struct gl_context *gl, const void *data, size_t size, unsigned texel_format, struct error *err)
+bool gl_buffer_set(struct gl_buffer *b, struct gl_context *gl, const void *data, size_t size, unsigned texel_format,
+                   struct error *err)
 {
     if ((!b->id || b->size < size) && !make(b, gl, size ? size : 16, texel_format, err))
         return false;

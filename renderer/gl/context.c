@@ -45,10 +45,7 @@ static bool has_word(const char *list, const char *word)
     return false;
 }
 
-static bool client_has(const char *extension)
-{
-    return has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), extension);
-}
+static bool client_has(const char *extension) { return has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), extension); }
 
 static void describe_egl_device(struct attempt *a)
 {
@@ -125,10 +122,17 @@ static void close_context(struct gl_context *gl)
 /* With word of resets (a driver that hung, a device that went away) where the driver gives it. */
 static EGLContext create_context(EGLDisplay display, EGLConfig config, bool debug)
 {
-    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                           EGL_CONTEXT_OPENGL_DEBUG, debug,
-                           EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
+    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                           4,
+                           EGL_CONTEXT_MINOR_VERSION,
+                           5,
+                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                           EGL_CONTEXT_OPENGL_DEBUG,
+                           debug,
+                           EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                           EGL_LOSE_CONTEXT_ON_RESET,
+                           EGL_NONE};
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
     if (context)
         return context;

@@ -17,18 +17,18 @@ struct gl_caps {
     bool software;            /* llvmpipe or another rasterizer on the CPU: shares the cores with everything else */
     bool conservative_raster; /* NV or INTEL extension */
     int max_texture_size;
-    long max_texture_buffer;  /* texels */
-    long max_storage_block;   /* bytes */
+    long max_texture_buffer; /* texels */
+    long max_storage_block;  /* bytes */
 };
 
 struct gl_context {
     struct device_info device;
     struct gl_caps caps;
-    char cache_key[320];      /* vendor, renderer and version: what a program binary depends on */
-    bool failed;              /* sticky: a GL error or a reset was seen (gl_check) */
+    char cache_key[320];          /* vendor, renderer and version: what a program binary depends on */
+    bool failed;                  /* sticky: a GL error or a reset was seen (gl_check) */
     struct gl_programs *programs; /* set by gl_programs_create(): whoever draws finds its programs here */
-    void *display, *context;  /* EGLDisplay, EGLContext */
-    void *gbm;                /* struct gbm_device, NULL unless platform gbm */
+    void *display, *context;      /* EGLDisplay, EGLContext */
+    void *gbm;                    /* struct gbm_device, NULL unless platform gbm */
     int gbm_fd;
 };
 

@@ -5,12 +5,12 @@
 #include <stddef.h>
 
 struct device_info {
-    int index;            /* what --device takes; -1: a platform without an index */
-    char platform[16];    /* "device", "surfaceless", "gbm" */
-    char node[64];        /* DRM node, "" if none */
+    int index;                                    /* what --device takes; -1: a platform without an index */
+    char platform[16];                            /* "device", "surfaceless", "gbm" */
+    char node[64];                                /* DRM node, "" if none */
     char vendor[64], renderer[128], version[128]; /* as GL says; "" when no context could be made */
-    char why_not[160];    /* "" when usable */
-    int cuda;             /* CUDA ordinal (EGL_NV_device_cuda), -1 if none: it need not equal the index */
+    char why_not[160];                            /* "" when usable */
+    int cuda;                                     /* CUDA ordinal (EGL_NV_device_cuda), -1 if none: it need not equal the index */
     bool software;
 };
 

@@ -22,7 +22,7 @@ struct gl_programs {
     struct gl_context *gl;
     char *shader_dir, *cache_dir; /* may be NULL */
     struct gl_program *first;
-    long long newest;             /* newest modification time seen in shader_dir, ns */
+    long long newest; /* newest modification time seen in shader_dir, ns */
 };
 
 static char *copy(const char *text) { return text ? strdup(text) : NULL; }

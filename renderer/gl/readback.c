@@ -42,7 +42,8 @@ bool gl_readback_start(struct gl_readback *ring, struct gl_context *gl, uint32_t
     return true;
 }
 
-bool gl_readback_finish_oldest(struct gl_readback *ring, struct gl_context *gl, bool wait, void *out, size_t size, struct error *err)
+bool gl_readback_finish_oldest(struct gl_readback *ring, struct gl_context *gl, bool wait, void *out, size_t size,
+                               struct error *err)
 {
     if (ring->count == 0)
         return false;

@@ -17,7 +17,7 @@ struct gl_readback {
         size_t capacity, size; /* bytes */
         void *fence;           /* GLsync; NULL: free */
     } slots[GL_READBACK_SLOTS];
-    unsigned first, count;     /* oldest slot in use, slots in use */
+    unsigned first, count; /* oldest slot in use, slots in use */
 };
 
 /* Starts reading the bound framebuffer's colour attachment, width x height, as `format`/`type` of `pixel_bytes`. False when all slots are in
@@ -27,6 +27,7 @@ bool gl_readback_start(struct gl_readback *ring, struct gl_context *gl, uint32_t
 
 /* The oldest: copied to `out` (at least its size) and its slot freed. wait = false: false at once if the GPU is not done.
  * On error the slot is freed too, unless the device does not answer. */
-bool gl_readback_finish_oldest(struct gl_readback *ring, struct gl_context *gl, bool wait, void *out, size_t size, struct error *err);
+bool gl_readback_finish_oldest(struct gl_readback *ring, struct gl_context *gl, bool wait, void *out, size_t size,
+                               struct error *err);
 
 void gl_readback_finish(struct gl_readback *ring);

@@ -38,7 +38,8 @@ static bool make(struct gl_texture *t, struct gl_context *gl, unsigned format, u
     return gl_check(gl, err);
 }
 
-bool gl_texture_size(struct gl_texture *t, struct gl_context *gl, unsigned format, uint32_t width, uint32_t height, struct error *err)
+bool gl_texture_size(struct gl_texture *t, struct gl_context *gl, unsigned format, uint32_t width, uint32_t height,
+                     struct error *err)
 {
     return make(t, gl, format, width, height, 1, true, err);
 }

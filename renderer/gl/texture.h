@@ -10,15 +10,16 @@ struct gl_context;
 
 struct gl_texture {
     unsigned id;
-    unsigned format;          /* GL internal format */
-    uint32_t width, height;   /* texels */
-    uint32_t layers;          /* >= 1; every texture is a 2D array or, if `flat`, plain 2D */
+    unsigned format;        /* GL internal format */
+    uint32_t width, height; /* texels */
+    uint32_t layers;        /* >= 1; every texture is a 2D array or, if `flat`, plain 2D */
     bool flat;
     size_t bytes;
 };
 
 /* Makes (or remakes, when anything differs) a 2D texture with nearest filtering, clamped to its edge. */
-bool gl_texture_size(struct gl_texture *t, struct gl_context *gl, unsigned format, uint32_t width, uint32_t height, struct error *err);
+bool gl_texture_size(struct gl_texture *t, struct gl_context *gl, unsigned format, uint32_t width, uint32_t height,
+                     struct error *err);
 /* The same as a 2D array of `layers`. */
 bool gl_texture_size_layers(struct gl_texture *t, struct gl_context *gl, unsigned format, uint32_t width, uint32_t height,
                             uint32_t layers, struct error *err);

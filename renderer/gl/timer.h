@@ -11,7 +11,7 @@ struct gl_timer {
     unsigned queries[GL_TIMER_FRAMES][GL_TIMER_PASSES + 1];
     bool used[GL_TIMER_FRAMES][GL_TIMER_PASSES + 1]; /* stamp 0 = the frame's start, stamp i + 1 = end of pass i */
     unsigned frame;
-    double start_ms;                  /* finish mode: wall clock at the last mark */
+    double start_ms; /* finish mode: wall clock at the last mark */
     bool finish;
 };
 

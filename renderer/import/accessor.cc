@@ -6,8 +6,10 @@
 
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 /* An accessor without a view is all zero: it costs the file nothing, so it may not cost much here. */
 constexpr size_t zero_count_max = size_t{1} << 20;
@@ -77,7 +79,8 @@ uint32_t load_index(const uint8_t *p, int component_type)
 
 } // namespace
 
-accessor_reader::accessor_reader(const tinygltf::Model &model, const std::vector<span> &buffers) : model_(model), buffers_(buffers)
+accessor_reader::accessor_reader(const tinygltf::Model &model, const std::vector<span> &buffers)
+    : model_(model), buffers_(buffers)
 {
     for (size_t i = 0; i < model.bufferViews.size(); i++)
         check_view(i);
@@ -113,8 +116,8 @@ void accessor_reader::check_accessor(size_t i) const
         fail("accessors[%zu] has elements of %zu bytes, more than the byteStride %zu of bufferViews[%d]", i, element, stride,
              a.bufferView);
     if (!fits(view.byteLength, a.byteOffset, stride, element, a.count))
-        fail("accessors[%zu] needs %zu elements of %zu bytes, %zu apart, from byte %zu on, but bufferViews[%d] has %zu bytes", i, a.count,
-             element, stride, a.byteOffset, a.bufferView, view.byteLength);
+        fail("accessors[%zu] needs %zu elements of %zu bytes, %zu apart, from byte %zu on, but bufferViews[%d] has %zu bytes", i,
+             a.count, element, stride, a.byteOffset, a.bufferView, view.byteLength);
 }
 
 void accessor_reader::check_sparse(size_t i) const
@@ -170,7 +173,8 @@ template <typename T> void accessor_reader::read_as(const tinygltf::Accessor &a,
     layout from = layout_of(a);
     for (size_t i = 0; i < a.count; i++)
         for (size_t k = 0; k < components; k++)
-            out[i * stride + k] = from.data.data ? to_float(load<T>(from.data.data + i * from.stride + k * sizeof(T)), a.normalized) : 0;
+            out[i * stride + k] =
+                from.data.data ? to_float(load<T>(from.data.data + i * from.stride + k * sizeof(T)), a.normalized) : 0;
     if (!a.sparse.isSparse)
         return;
     const uint8_t *indices = view_bytes(a.sparse.indices.bufferView).data + a.sparse.indices.byteOffset;
@@ -223,7 +227,8 @@ void accessor_reader::read_indices(int accessor, uint32_t *out) const
     const uint8_t *values = view_bytes(a.sparse.values.bufferView).data + a.sparse.values.byteOffset;
     size_t index_size = component_size(a.sparse.indices.componentType), value_size = component_size(a.componentType);
     for (size_t i = 0; i < static_cast<size_t>(a.sparse.count); i++)
-        out[load_index(indices + i * index_size, a.sparse.indices.componentType)] = load_index(values + i * value_size, a.componentType);
+        out[load_index(indices + i * index_size, a.sparse.indices.componentType)] =
+            load_index(values + i * value_size, a.componentType);
 }
 
 } // namespace gltf

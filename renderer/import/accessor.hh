@@ -6,10 +6,12 @@
 #include "import/bytes.hh"
 #include "import/tinygltf.hh"
 
-namespace gltf {
+namespace gltf
+{
 
-class accessor_reader {
-public:
+class accessor_reader
+{
+  public:
     /* Checks all views and accessors of `model` against `buffers`; both must outlive it. */
     accessor_reader(const tinygltf::Model &model, const std::vector<span> &buffers);
 
@@ -29,7 +31,7 @@ public:
     /* The bytes of a buffer view. */
     span view_bytes(int view) const;
 
-private:
+  private:
     struct layout {
         span data; /* from the first element; empty: all zero */
         size_t stride;

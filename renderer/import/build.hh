@@ -9,7 +9,8 @@
 #include "import/document.hh"
 #include "import/warnings.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 class folder;
 

@@ -8,7 +8,8 @@
 #include <new>
 #include <type_traits>
 
-namespace gltf {
+namespace gltf
+{
 
 struct span {
     const uint8_t *data = nullptr;
@@ -26,10 +27,11 @@ struct bytes {
 };
 
 /* A growing array in malloc'd memory: release() hands it to C. */
-template <typename T> class pod_array {
+template <typename T> class pod_array
+{
     static_assert(std::is_trivially_copyable<T>::value, "kept by realloc");
 
-public:
+  public:
     pod_array() = default;
     pod_array(const pod_array &) = delete;
     pod_array &operator=(const pod_array &) = delete;
@@ -58,7 +60,7 @@ public:
         return data;
     }
 
-private:
+  private:
     void grow(size_t wanted)
     {
         size_t larger = capacity_ + capacity_ / 2;

@@ -3,8 +3,10 @@
 #include "import/failure.hh"
 #include "import/warnings.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 constexpr uint32_t chunk_json = 0x4e4f534a, chunk_bin = 0x004e4942;
 

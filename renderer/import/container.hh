@@ -3,7 +3,8 @@
 
 #include "import/bytes.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 class warnings;
 

@@ -7,12 +7,14 @@
 #include "import/tinygltf.hh"
 #include "import/warnings.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
-const char *const supported[] = {"KHR_texture_transform",           "KHR_mesh_quantization", "KHR_materials_unlit",
-                                 "KHR_materials_emissive_strength", "KHR_lights_punctual",   "EXT_mesh_gpu_instancing",
-                                 "EXT_texture_webp"};
+const char *const supported[] = {
+    "KHR_texture_transform", "KHR_mesh_quantization",   "KHR_materials_unlit", "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",   "EXT_mesh_gpu_instancing", "EXT_texture_webp"};
 
 bool is_supported(const std::string &name)
 {
@@ -29,8 +31,8 @@ void check_extensions(const json &root, warnings &warn)
         list += std::string(list.empty() ? "" : ", ") + s;
     for (const json &name : root.value("extensionsRequired", json::array()))
         if (!is_supported(name.get<std::string>()))
-            fail("the file requires the extension %.80s, which is not supported; supported are %s", name.get<std::string>().c_str(),
-                 list.c_str());
+            fail("the file requires the extension %.80s, which is not supported; supported are %s",
+                 name.get<std::string>().c_str(), list.c_str());
     for (const json &name : root.value("extensionsUsed", json::array()))
         if (!is_supported(name.get<std::string>()))
             warn.add("the extension %.80s was ignored", name.get<std::string>().c_str());
@@ -39,8 +41,8 @@ void check_extensions(const json &root, warnings &warn)
 bool parse_version(const std::string &text, int *major, int *minor)
 {
     int used = 0;
-    return sscanf(text.c_str(), "%5d.%5d%n", major, minor, &used) == 2 && static_cast<size_t>(used) == text.size() && *major >= 0 &&
-           *minor >= 0;
+    return sscanf(text.c_str(), "%5d.%5d%n", major, minor, &used) == 2 && static_cast<size_t>(used) == text.size() &&
+           *major >= 0 && *minor >= 0;
 }
 
 void check_version(const json &asset)

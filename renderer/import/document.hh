@@ -8,20 +8,22 @@
 
 #include "import/bytes.hh"
 
-namespace tinygltf {
+namespace tinygltf
+{
 class Model;
 }
 
-namespace gltf {
+namespace gltf
+{
 
 class warnings;
 
 /* buffers[i] or images[i] as the file says. */
 struct resource {
-    std::string uri;      /* "" if it has none */
+    std::string uri; /* "" if it has none */
     std::string mime;
     uint64_t byte_length = 0; /* buffers */
-    int buffer_view = -1; /* images */
+    int buffer_view = -1;     /* images */
     bool has_uri = false;
 };
 

@@ -4,12 +4,10 @@
 #include <cstdio>
 #include <new>
 
-namespace gltf {
-
-failure::failure(enum error_code code, const char *text) : code_(code)
+namespace gltf
 {
-    snprintf(text_, sizeof text_, "%s", text);
-}
+
+failure::failure(enum error_code code, const char *text) : code_(code) { snprintf(text_, sizeof text_, "%s", text); }
 
 void fail(const char *format, ...)
 {

@@ -9,15 +9,17 @@ extern "C" {
 #include "base/error.h"
 }
 
-namespace gltf {
+namespace gltf
+{
 
-class failure : public std::exception {
-public:
+class failure : public std::exception
+{
+  public:
     failure(enum error_code code, const char *text);
     const char *what() const noexcept override { return text_; }
     enum error_code code() const noexcept { return code_; }
 
-private:
+  private:
     enum error_code code_;
     char text_[480];
 };

@@ -10,8 +10,10 @@
 
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 struct descriptor {
     int fd;
@@ -180,10 +182,7 @@ folder::folder(const char *path)
         fail_with(ERROR_IO, "the folder %s cannot be opened: %s", name.c_str(), strerror(errno));
 }
 
-folder::~folder()
-{
-    close(fd_);
-}
+folder::~folder() { close(fd_); }
 
 bytes folder::read(const std::string &uri, const char *what, uint64_t limit) const
 {
@@ -208,10 +207,7 @@ bytes folder::read(const std::string &uri, const char *what, uint64_t limit) con
     return read_regular(file.fd, (std::string(what) + " \"" + shown + "\"").c_str(), limit);
 }
 
-bool is_data_uri(const std::string &uri)
-{
-    return uri.compare(0, 5, "data:") == 0;
-}
+bool is_data_uri(const std::string &uri) { return uri.compare(0, 5, "data:") == 0; }
 
 bytes decode_data_uri(const std::string &uri, const char *what)
 {

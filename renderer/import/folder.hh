@@ -5,7 +5,8 @@
 
 #include "import/bytes.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 /* Files, and all buffers of a scene together, end here. */
 constexpr uint64_t file_size_max = UINT64_C(1) << 31;
@@ -13,8 +14,9 @@ constexpr uint64_t file_size_max = UINT64_C(1) << 31;
 /* Reads a regular file; `what` names it in errors. Fails with ERROR_NO_INPUT if it does not exist. */
 bytes read_scene_file(const char *path);
 
-class folder {
-public:
+class folder
+{
+  public:
     /* The folder that holds `path`. */
     explicit folder(const char *path);
     ~folder();
@@ -25,7 +27,7 @@ public:
      * than `limit` or outside the folder, symbolic links followed. */
     bytes read(const std::string &uri, const char *what, uint64_t limit) const;
 
-private:
+  private:
     int fd_;
 };
 

@@ -6,7 +6,8 @@
 #include "import/failure.hh"
 #include "import/folder.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 build::~build()
 {
@@ -26,7 +27,8 @@ void copy_name(char *out, size_t size, const std::string &name)
     out[length] = 0;
 }
 
-namespace {
+namespace
+{
 
 struct import {
     span file;
@@ -61,8 +63,8 @@ std::vector<span> load_buffers(const document &doc, const container &file, const
         if (buffer.has_uri)
             data = loaded.view();
         if (buffer.byte_length > data.size)
-            fail("%s.byteLength is %llu, but there are %zu bytes", what.c_str(), static_cast<unsigned long long>(buffer.byte_length),
-                 data.size);
+            fail("%s.byteLength is %llu, but there are %zu bytes", what.c_str(),
+                 static_cast<unsigned long long>(buffer.byte_length), data.size);
         total += data.size;
         if (total > file_size_max)
             fail("the buffers have more than %llu bytes together", static_cast<unsigned long long>(file_size_max));
@@ -81,10 +83,10 @@ size_t element_budget(const std::vector<span> &buffers)
     return std::min(elements_least + elements_per_byte * bytes, elements_most);
 }
 
-#define HAND_OVER(member, counter, from)                                                    \
-    do {                                                                                    \
-        scene->counter = (from).size();                                                     \
-        scene->member = reinterpret_cast<decltype(scene->member)>((from).release());        \
+#define HAND_OVER(member, counter, from)                                             \
+    do {                                                                             \
+        scene->counter = (from).size();                                              \
+        scene->member = reinterpret_cast<decltype(scene->member)>((from).release()); \
     } while (0)
 
 struct scene *to_scene(build &b, const char *path)

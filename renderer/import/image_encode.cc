@@ -7,7 +7,8 @@
 #include "import/bridge.hh"
 #include "import/failure.hh"
 
-namespace {
+namespace
+{
 
 using gltf::fail_with;
 
@@ -72,7 +73,8 @@ void encode(void *context)
     OIIO::ImageSpec spec = make_spec(e);
     OIIO::stride_t pixel = e.format == IMAGE_EXR ? 4 * sizeof(float) : 4;
     if (!output->open(name, spec) || !output->write_image(spec.format, e.pixels, pixel, pixel * e.width) || !output->close())
-        fail_with(ERROR_IO, "%s of %u x %u pixels cannot be encoded: %.200s", name, e.width, e.height, output->geterror().c_str());
+        fail_with(ERROR_IO, "%s of %u x %u pixels cannot be encoded: %.200s", name, e.width, e.height,
+                  output->geterror().c_str());
     *e.out = static_cast<uint8_t *>(malloc(memory.size() ? memory.size() : 1));
     if (!*e.out)
         throw std::bad_alloc();

@@ -7,7 +7,8 @@
 #include "import/failure.hh"
 #include "import/image_size.hh"
 
-namespace {
+namespace
+{
 
 using gltf::fail;
 

@@ -1,7 +1,9 @@
 #include "import/image_size.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 uint32_t big(const uint8_t *p, int n)
 {

@@ -3,7 +3,8 @@
 
 #include "import/bytes.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 /* PNG (IHDR), JPEG (first SOF) and WebP (VP8, VP8L, VP8X); false if the header is not understood. */
 bool find_image_size(span data, uint64_t *width, uint64_t *height);

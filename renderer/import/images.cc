@@ -2,8 +2,10 @@
 #include "import/failure.hh"
 #include "import/folder.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 /* All decoded pixels together: 1 GiB. */
 constexpr uint64_t pixels_max = uint64_t{1} << 28;

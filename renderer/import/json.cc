@@ -5,8 +5,10 @@
 
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 /* glTF itself nests about 8 deep; extras may go further. tinygltf walks extras and extensions recursively. */
 constexpr int depth_max = 256;
@@ -14,8 +16,9 @@ constexpr size_t text_max = size_t{1} << 28;
 
 /* A pass over the text that keeps nothing but the keys of the open objects. nlohmann's parser does not recurse; its callback parser, which
  * could do the same while it builds values, takes time quadratic in the length of an array. */
-class guard : public nlohmann::json_sax<json> {
-public:
+class guard : public nlohmann::json_sax<json>
+{
+  public:
     bool null() override { return true; }
     bool boolean(bool) override { return true; }
     bool number_integer(number_integer_t) override { return true; }
@@ -46,7 +49,7 @@ public:
         fail("the JSON is not valid: %.300s", e.what());
     }
 
-private:
+  private:
     bool deeper()
     {
         if (++depth_ > depth_max)

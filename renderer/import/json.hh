@@ -5,7 +5,8 @@
 
 #include "import/bytes.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 using json = nlohmann::json;
 

@@ -3,8 +3,10 @@
 #include "import/build.hh"
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 enum wrap_mode wrap_from(int value, const char *name, size_t index)
 {
@@ -80,7 +82,8 @@ template <typename info> struct texture_use use_texture(build &b, const info &fr
         texcoord = static_cast<int>(number(*transform, "texCoord", texcoord));
     }
     if (texcoord > 1) {
-        b.warn.add("materials[%zu].%s uses texture coordinates %d and was left out: sets 0 and 1 are read", material, name, texcoord);
+        b.warn.add("materials[%zu].%s uses texture coordinates %d and was left out: sets 0 and 1 are read", material, name,
+                   texcoord);
         return use;
     }
     use.texcoord = static_cast<uint32_t>(texcoord);

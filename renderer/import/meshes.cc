@@ -6,8 +6,10 @@
 #include "import/build.hh"
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 struct attribute_set {
     int position = -1, normal = -1, texcoord[2] = {-1, -1}, color = -1;
@@ -34,10 +36,7 @@ bool is_normalized_unsigned(const tinygltf::Accessor &a)
     return a.normalized && (a.componentType == 5121 || a.componentType == 5123);
 }
 
-bool is_small_integer(const tinygltf::Accessor &a)
-{
-    return a.componentType >= 5120 && a.componentType <= 5123;
-}
+bool is_small_integer(const tinygltf::Accessor &a) { return a.componentType >= 5120 && a.componentType <= 5123; }
 
 /* glTF 3.7.2.1 and KHR_mesh_quantization. */
 bool format_accepted(const std::string &name, const tinygltf::Accessor &a, unsigned components)
@@ -154,7 +153,8 @@ void make_normals(const vec3f *positions, vec3f *normals, size_t count)
 }
 
 /* Reads `accessor` into the end of `to`: as it is, or one element per entry of `expand`. */
-template <typename vec> uint32_t append(build &b, pod_array<vec> &to, int accessor, const std::vector<uint32_t> *expand, const char *what)
+template <typename vec>
+uint32_t append(build &b, pod_array<vec> &to, int accessor, const std::vector<uint32_t> *expand, const char *what)
 {
     constexpr size_t width = sizeof(vec) / sizeof(float);
     size_t first = to.size(), count = b.reader.count(accessor);
@@ -253,7 +253,8 @@ uint32_t add_primitive(mesh_builder &mb, const tinygltf::Primitive &p, const std
         return known->second;
     std::vector<uint32_t> list = to_triangle_list(read_indices(b, p, b.reader.count(set.position), where), p.mode);
     bool own = set.normal < 0;
-    vertex_key vertices = {set.position, set.normal, set.texcoord[0], set.texcoord[1], set.color, own ? p.indices : -2, own ? p.mode : -2};
+    vertex_key vertices = {set.position, set.normal,           set.texcoord[0],  set.texcoord[1],
+                           set.color,    own ? p.indices : -2, own ? p.mode : -2};
     auto stored = mb.vertices.find(vertices);
     if (stored == mb.vertices.end())
         stored = mb.vertices.emplace(vertices, store_vertices(b, set, list, where)).first;

@@ -2,8 +2,10 @@
 
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 struct affine matrix_transform(const std::vector<double> &m, size_t index)
 {
@@ -38,7 +40,8 @@ struct affine trs_transform(const trs &from, size_t index)
     double xx = s * q[0] * q[0], yy = s * q[1] * q[1], zz = s * q[2] * q[2];
     double xy = s * q[0] * q[1], xz = s * q[0] * q[2], yz = s * q[1] * q[2];
     double wx = s * q[3] * q[0], wy = s * q[3] * q[1], wz = s * q[3] * q[2];
-    const double rotation[3][3] = {{1 - yy - zz, xy - wz, xz + wy}, {xy + wz, 1 - xx - zz, yz - wx}, {xz - wy, yz + wx, 1 - xx - yy}};
+    const double rotation[3][3] = {
+        {1 - yy - zz, xy - wz, xz + wy}, {xy + wz, 1 - xx - zz, yz - wx}, {xz - wy, yz + wx, 1 - xx - yy}};
     struct affine out;
     for (size_t row = 0; row < 3; row++) {
         for (size_t column = 0; column < 3; column++)

@@ -4,7 +4,8 @@
 #include "import/bridge.hh"
 #include "import/tinygltf.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 struct trs {
     double translation[3], rotation[4], scale[3]; /* quaternion x, y, z, w, of any length but 0 */

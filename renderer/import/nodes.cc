@@ -5,8 +5,10 @@
 #include "import/failure.hh"
 #include "import/node_transform.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 /* Far above any real scene; keeps a few bytes of instancing from filling the memory. */
 constexpr size_t instances_max = size_t{1} << 22;
@@ -30,8 +32,8 @@ std::vector<bool> check_trees(const tinygltf::Model &model)
     for (size_t i = 0; i < model.nodes.size(); i++) {
         for (int child : model.nodes[i].children) {
             if (has_parent[static_cast<size_t>(child)])
-                fail("nodes[%zu] is a child of nodes[%d] but has another parent too: a node may have one", static_cast<size_t>(child),
-                     static_cast<int>(i));
+                fail("nodes[%zu] is a child of nodes[%d] but has another parent too: a node may have one",
+                     static_cast<size_t>(child), static_cast<int>(i));
             has_parent[static_cast<size_t>(child)] = true;
         }
     }
@@ -116,8 +118,8 @@ void add_instances(build &b, int mesh, const struct affine &world)
 }
 
 /* One attribute of EXT_mesh_gpu_instancing as floats; empty if absent. */
-std::vector<float> instancing_attribute(build &b, const tinygltf::Value &attributes, const char *name, unsigned components, size_t *count,
-                                        size_t node)
+std::vector<float> instancing_attribute(build &b, const tinygltf::Value &attributes, const char *name, unsigned components,
+                                        size_t *count, size_t node)
 {
     std::vector<float> out;
     if (!attributes.Has(name))
@@ -137,7 +139,8 @@ std::vector<float> instancing_attribute(build &b, const tinygltf::Value &attribu
     return out;
 }
 
-void add_gpu_instances(build &b, const tinygltf::Value &extension, const tinygltf::Node &node, size_t index, const struct affine &world)
+void add_gpu_instances(build &b, const tinygltf::Value &extension, const tinygltf::Node &node, size_t index,
+                       const struct affine &world)
 {
     const tinygltf::Value &attributes = extension.Get("attributes");
     size_t count = SIZE_MAX;
@@ -184,7 +187,8 @@ struct light make_light(const tinygltf::Light &from, size_t index)
         fail("KHR_lights_punctual.lights[%zu].spot: innerConeAngle %g must be less than outerConeAngle %g", index, light.inner,
              light.outer);
     if (light.kind == LIGHT_SPOT && from.spot.outerConeAngle > M_PI / 2 + 1e-6)
-        fail("KHR_lights_punctual.lights[%zu].spot.outerConeAngle is %g, at most pi/2 is accepted", index, from.spot.outerConeAngle);
+        fail("KHR_lights_punctual.lights[%zu].spot.outerConeAngle is %g, at most pi/2 is accepted", index,
+             from.spot.outerConeAngle);
     if (!std::isfinite(light.intensity) || !std::isfinite(light.color[0] + light.color[1] + light.color[2]))
         fail("KHR_lights_punctual.lights[%zu] is too bright for single precision", index);
     return light;
@@ -250,12 +254,14 @@ void check_cameras(const tinygltf::Model &model)
             if (c.orthographic.ymag == 0 || c.orthographic.xmag == 0)
                 fail("cameras[%zu].orthographic: xmag and ymag must not be 0", i);
             if (!(c.orthographic.zfar > c.orthographic.znear))
-                fail("cameras[%zu].orthographic: zfar %g must be greater than znear %g", i, c.orthographic.zfar, c.orthographic.znear);
+                fail("cameras[%zu].orthographic: zfar %g must be greater than znear %g", i, c.orthographic.zfar,
+                     c.orthographic.znear);
         } else {
             if (!(c.perspective.yfov > 0) || !(c.perspective.znear > 0))
                 fail("cameras[%zu].perspective: yfov and znear must be greater than 0", i);
             if (c.perspective.zfar > 0 && !(c.perspective.zfar > c.perspective.znear))
-                fail("cameras[%zu].perspective: zfar %g must be greater than znear %g", i, c.perspective.zfar, c.perspective.znear);
+                fail("cameras[%zu].perspective: zfar %g must be greater than znear %g", i, c.perspective.zfar,
+                     c.perspective.znear);
         }
     }
 }

@@ -5,8 +5,10 @@
 
 #include "import/failure.hh"
 
-namespace gltf {
-namespace {
+namespace gltf
+{
+namespace
+{
 
 enum class kind { boolean, string, number, integer, index, numbers, indices, strings, object, objects, index_map };
 
@@ -22,7 +24,10 @@ struct rule {
 
 constexpr double above_zero = 4.9406564584124654e-324, int_max = 2147483647.0, size_max = 9007199254740992.0;
 constexpr size_t array_max = 1000000;
-#define END {nullptr, kind::object}
+#define END                   \
+    {                         \
+        nullptr, kind::object \
+    }
 
 const rule texture_transform[] = {{"offset", kind::numbers, false, -HUGE_VAL, HUGE_VAL, 2},
                                   {"rotation", kind::number},
@@ -36,19 +41,17 @@ const rule texture_info[] = {{"index", kind::index, true, 0, 0, 0, "textures"},
                              {"strength", kind::number, false, 0, 1},
                              {"extensions", kind::object, false, 0, 0, 0, nullptr, texture_info_extensions},
                              END};
-const rule metallic_roughness[] = {
-    {"baseColorFactor", kind::numbers, false, 0, 1, 4},
-    {"metallicFactor", kind::number, false, 0, 1},
-    {"roughnessFactor", kind::number, false, 0, 1},
-    {"baseColorTexture", kind::object, false, 0, 0, 0, nullptr, texture_info},
-    {"metallicRoughnessTexture", kind::object, false, 0, 0, 0, nullptr, texture_info},
-    END};
+const rule metallic_roughness[] = {{"baseColorFactor", kind::numbers, false, 0, 1, 4},
+                                   {"metallicFactor", kind::number, false, 0, 1},
+                                   {"roughnessFactor", kind::number, false, 0, 1},
+                                   {"baseColorTexture", kind::object, false, 0, 0, 0, nullptr, texture_info},
+                                   {"metallicRoughnessTexture", kind::object, false, 0, 0, 0, nullptr, texture_info},
+                                   END};
 const rule emissive_strength[] = {{"emissiveStrength", kind::number, false, 0}, END};
 const rule nothing[] = {END};
-const rule material_extensions[] = {
-    {"KHR_materials_emissive_strength", kind::object, false, 0, 0, 0, nullptr, emissive_strength},
-    {"KHR_materials_unlit", kind::object, false, 0, 0, 0, nullptr, nothing},
-    END};
+const rule material_extensions[] = {{"KHR_materials_emissive_strength", kind::object, false, 0, 0, 0, nullptr, emissive_strength},
+                                    {"KHR_materials_unlit", kind::object, false, 0, 0, 0, nullptr, nothing},
+                                    END};
 const rule material[] = {{"name", kind::string},
                          {"pbrMetallicRoughness", kind::object, false, 0, 0, 0, nullptr, metallic_roughness},
                          {"normalTexture", kind::object, false, 0, 0, 0, nullptr, texture_info},
@@ -64,9 +67,8 @@ const rule sparse_indices[] = {{"bufferView", kind::index, true, 0, 0, 0, "buffe
                                {"byteOffset", kind::integer, false, 0, int_max},
                                {"componentType", kind::integer, true, 5121, 5125},
                                END};
-const rule sparse_values[] = {{"bufferView", kind::index, true, 0, 0, 0, "bufferViews"},
-                              {"byteOffset", kind::integer, false, 0, int_max},
-                              END};
+const rule sparse_values[] = {
+    {"bufferView", kind::index, true, 0, 0, 0, "bufferViews"}, {"byteOffset", kind::integer, false, 0, int_max}, END};
 const rule sparse[] = {{"count", kind::integer, true, 1, int_max},
                        {"indices", kind::object, true, 0, 0, 0, nullptr, sparse_indices},
                        {"values", kind::object, true, 0, 0, 0, nullptr, sparse_values},
@@ -82,12 +84,9 @@ const rule accessor[] = {{"bufferView", kind::index, false, 0, 0, 0, "bufferView
                          {"sparse", kind::object, false, 0, 0, 0, nullptr, sparse},
                          END};
 const rule buffer[] = {{"byteLength", kind::integer, true, 1, size_max}, {"uri", kind::string}, END};
-const rule buffer_view[] = {{"buffer", kind::index, true, 0, 0, 0, "buffers"},
-                            {"byteOffset", kind::integer, false, 0, size_max},
-                            {"byteLength", kind::integer, true, 1, size_max},
-                            {"byteStride", kind::integer, false, 4, 252},
-                            {"target", kind::integer, false, 0, int_max},
-                            END};
+const rule buffer_view[] = {{"buffer", kind::index, true, 0, 0, 0, "buffers"}, {"byteOffset", kind::integer, false, 0, size_max},
+                            {"byteLength", kind::integer, true, 1, size_max},  {"byteStride", kind::integer, false, 4, 252},
+                            {"target", kind::integer, false, 0, int_max},      END};
 const rule image[] = {{"uri", kind::string},
                       {"mimeType", kind::string},
                       {"name", kind::string},
@@ -177,8 +176,9 @@ const rule root_members[] = {{"asset", kind::object, true, 0, 0, 0, nullptr, ass
                              {"extensions", kind::object, false, 0, 0, 0, nullptr, root_extensions},
                              END};
 
-class checker {
-public:
+class checker
+{
+  public:
     explicit checker(const json &root) : root_(root) {}
 
     void object(json &value, const rule *rules, const std::string &path)
@@ -195,7 +195,7 @@ public:
         }
     }
 
-private:
+  private:
     size_t collection_size(const char *name) const
     {
         if (strcmp(name, "KHR_lights_punctual") == 0) {
@@ -290,9 +290,7 @@ private:
         case kind::integer: integer(value, r, path); break;
         case kind::index: index(value, r, path); break;
         case kind::numbers: numbers(value, r, path); break;
-        case kind::indices:
-            array(value, path, [&](json &entry, const std::string &where) { index(entry, r, where); });
-            break;
+        case kind::indices: array(value, path, [&](json &entry, const std::string &where) { index(entry, r, where); }); break;
         case kind::strings:
             array(value, path, [&](json &entry, const std::string &where) {
                 if (!entry.is_string())
@@ -310,9 +308,6 @@ private:
 
 } // namespace
 
-void check_rules(json &root)
-{
-    checker(root).object(root, root_members, "");
-}
+void check_rules(json &root) { checker(root).object(root, root_members, ""); }
 
 } // namespace gltf

@@ -3,7 +3,8 @@
 
 #include "import/json.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 /* Fails with the path of the first member that breaks a rule. Whole numbers written as 3.0 become integers. */
 void check_rules(json &root);

@@ -7,7 +7,8 @@
 
 #include "import/bridge.hh"
 
-namespace gltf {
+namespace gltf
+{
 
 constexpr size_t warnings_max = 64;
 

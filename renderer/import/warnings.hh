@@ -7,15 +7,17 @@
 
 struct import_report;
 
-namespace gltf {
+namespace gltf
+{
 
-class warnings {
-public:
+class warnings
+{
+  public:
     void add(const char *format, ...) __attribute__((format(printf, 2, 3)));
     /* To `report`, or to the log when it is NULL. */
     void hand_over(struct import_report *report, const char *name) const;
 
-private:
+  private:
     std::set<std::string> seen_;
     std::vector<std::string> list_;
 };

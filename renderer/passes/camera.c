@@ -41,10 +41,12 @@ static bool reserve_cpu(struct gbuffer *g, struct error *err)
     g->cpu_ids = malloc(pixels * sizeof *g->cpu_ids);
     g->cpu_pixels = malloc(pixels * sizeof *g->cpu_pixels);
     g->cpu_room = g->cpu_ids && g->cpu_pixels ? pixels : 0;
-    return g->cpu_room || error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture of %u x %u", g->ids.width, g->ids.height);
+    return g->cpu_room ||
+           error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture of %u x %u", g->ids.width, g->ids.height);
 }
 
-bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct tracer *tracer, struct job_pool *pool, struct error *err)
+bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct tracer *tracer, struct job_pool *pool,
+                  struct error *err)
 {
     if (!reserve_cpu(g, err))
         return false;
@@ -55,8 +57,9 @@ bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct trac
     if (!tiles_set_occupied(&g->tiles, g->cpu_ids, g->ids.width, g->ids.height, pool, err))
         return false;
     if (scene->plain && g->tiles.count)
-        glTextureSubImage2D(g->pixels.id, 0, 0, (GLint)g->tiles.top, (GLsizei)g->ids.width, (GLsizei)(g->tiles.bottom - g->tiles.top),
-                            GL_RGBA_INTEGER, GL_UNSIGNED_INT, g->cpu_pixels + (size_t)g->tiles.top * g->ids.width);
+        glTextureSubImage2D(g->pixels.id, 0, 0, (GLint)g->tiles.top, (GLsizei)g->ids.width,
+                            (GLsizei)(g->tiles.bottom - g->tiles.top), GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                            g->cpu_pixels + (size_t)g->tiles.top * g->ids.width);
     return gl_check(scene->gl, err);
 }
 

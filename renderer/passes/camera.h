@@ -14,7 +14,8 @@ struct tracer;
 bool camera_rasterize(struct gbuffer *g, struct draw_scene *scene, struct error *err);
 
 /* Fills ids by tracing, and the pixels too where the scene is plain (draw_scene.h). */
-bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct tracer *tracer, struct job_pool *pool, struct error *err);
+bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct tracer *tracer, struct job_pool *pool,
+                  struct error *err);
 
 /* Fills pixels and emission from ids, unless they are there already. */
 bool camera_surfaces(struct gbuffer *g, struct draw_scene *scene, struct error *err);

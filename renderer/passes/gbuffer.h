@@ -18,20 +18,20 @@ struct gl_context;
 struct pixel;
 
 struct gbuffer {
-    struct draw_view view;         /* the camera */
+    struct draw_view view; /* the camera */
     struct gl_buffer view_block;
-    struct gl_texture ids;         /* R32UI; of a traced picture only after gbuffer_need_ids() */
-    struct gl_texture pixels;      /* RGBA32UI: struct pixel */
-    struct gl_texture emission;    /* RGBA16F; made for scenes that have some */
-    struct gl_texture depth;       /* D32F; made when rasterizing */
-    struct tiles tiles;            /* where there are surfaces; full-screen passes draw these */
+    struct gl_texture ids;      /* R32UI; of a traced picture only after gbuffer_need_ids() */
+    struct gl_texture pixels;   /* RGBA32UI: struct pixel */
+    struct gl_texture emission; /* RGBA16F; made for scenes that have some */
+    struct gl_texture depth;    /* D32F; made when rasterizing */
+    struct tiles tiles;         /* where there are surfaces; full-screen passes draw these */
     struct gl_target target;
-    uint32_t *cpu_ids;             /* width * height; valid if traced, else filled on request */
-    struct pixel *cpu_pixels;      /* width * height; made when tracing */
-    size_t cpu_room;               /* pixels that these two have room for */
-    bool traced;                   /* the last picture's producer */
-    bool ids_uploaded;             /* ids is the last picture's */
-    bool pixels_done;              /* pixels is the last picture's */
+    uint32_t *cpu_ids;        /* width * height; valid if traced, else filled on request */
+    struct pixel *cpu_pixels; /* width * height; made when tracing */
+    size_t cpu_room;          /* pixels that these two have room for */
+    bool traced;              /* the last picture's producer */
+    bool ids_uploaded;        /* ids is the last picture's */
+    bool pixels_done;         /* pixels is the last picture's */
 };
 
 /* Sizes everything for `view` and uploads its blocks. */

@@ -12,7 +12,8 @@
 #include "gl/program.h"
 #include "passes/gbuffer.h"
 
-_Static_assert(LIGHT_DIRECTIONAL == LIGHT_KIND_DIRECTIONAL && LIGHT_POINT == LIGHT_KIND_POINT && LIGHT_SPOT == LIGHT_KIND_SPOT, "blocks.h");
+_Static_assert(LIGHT_DIRECTIONAL == LIGHT_KIND_DIRECTIONAL && LIGHT_POINT == LIGHT_KIND_POINT && LIGHT_SPOT == LIGHT_KIND_SPOT,
+               "blocks.h");
 
 double lighting_illuminance(const struct scene *scene, const struct light *lights, size_t light_count)
 {
@@ -52,7 +53,8 @@ static bool upload_block(struct lighting *out, const struct lighting_input *in, 
     for (size_t i = 0; i < in->light_count; i++) {
         const struct light *l = &in->lights[i];
         put_vec4(block.lights_position[i], dvec3_sub(l->position, eye), l->kind);
-        put_vec4(block.lights_direction[i], l->direction, l->kind != LIGHT_DIRECTIONAL && l->range > 0 ? 1 / (l->range * l->range) : 0);
+        put_vec4(block.lights_direction[i], l->direction,
+                 l->kind != LIGHT_DIRECTIONAL && l->range > 0 ? 1 / (l->range * l->range) : 0);
         put_vec4(block.lights_color[i], dvec3_scale(dvec3_from_float(l->color), l->intensity), 0);
         put_cone(block.lights_cone[i], l);
     }

@@ -24,16 +24,16 @@ struct lighting_input {
     size_t light_count;
     enum lighting_show show;
     enum lighting_display display;
-    double exposure;   /* picture = radiance * exposure */
-    double ambient;    /* radiance reflected by white */
-    unsigned aa_side;  /* samples a side: 1, 2, 4; the gbuffer is that much larger than the result */
+    double exposure;  /* picture = radiance * exposure */
+    double ambient;   /* radiance reflected by white */
+    unsigned aa_side; /* samples a side: 1, 2, 4; the gbuffer is that much larger than the result */
 };
 
 struct lighting {
     struct gl_buffer block;
     struct gl_texture samples; /* at the gbuffer's size, RGBA16F, or RGBA32F if display is linear; aa_side > 1 only */
     struct gl_texture result;
-    struct gl_target target;   /* bound, with `result`, when lighting_run() returns */
+    struct gl_target target; /* bound, with `result`, when lighting_run() returns */
 };
 
 /* Writes `result`: RGBA32F if display is linear, else RGBA8. */

@@ -87,7 +87,8 @@ static void add_row(struct tiles *t, const struct scan *s, uint32_t row)
     }
 }
 
-bool tiles_set_occupied(struct tiles *t, const uint32_t *ids, uint32_t width, uint32_t height, struct job_pool *pool, struct error *err)
+bool tiles_set_occupied(struct tiles *t, const uint32_t *ids, uint32_t width, uint32_t height, struct job_pool *pool,
+                        struct error *err)
 {
     uint32_t rows = (height + SIDE - 1) / SIDE;
     struct scan scan = {ids, width, height, (width + SIDE - 1) / SIDE, NULL};

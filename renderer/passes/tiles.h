@@ -13,16 +13,17 @@ struct job_pool;
 struct tiles {
     struct tile_rectangle {
         uint32_t x, y, width, height; /* pixels */
-    } *rectangles;                    /* owned */
+    } * rectangles;                   /* owned */
     uint32_t count, capacity;
-    uint32_t top, bottom;             /* pixel rows they lie in: [top, bottom) */
+    uint32_t top, bottom; /* pixel rows they lie in: [top, bottom) */
 };
 
 /* The whole picture. */
 bool tiles_set_all(struct tiles *t, uint32_t width, uint32_t height, struct error *err);
 
 /* What of `ids` (width * height; SCENE_NONE: background) holds surfaces. */
-bool tiles_set_occupied(struct tiles *t, const uint32_t *ids, uint32_t width, uint32_t height, struct job_pool *pool, struct error *err);
+bool tiles_set_occupied(struct tiles *t, const uint32_t *ids, uint32_t width, uint32_t height, struct job_pool *pool,
+                        struct error *err);
 
 /* Draws them with the program in use, whose vertex stage is full_screen.vert; any vertex array will do. */
 void tiles_draw(const struct tiles *t, uint32_t vertex_array);

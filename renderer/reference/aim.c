@@ -18,7 +18,8 @@ static void clip_axis(struct span *s, double origin, double direction, double lo
 }
 
 /* Sets the lane's fp32 ray along `unit` from `origin` over `span`, clipped to the scene's box; false when nothing is left. */
-static bool set_ray(struct line_packet *p, struct RTCRay16 *ray, unsigned lane, struct dvec3 origin, struct dvec3 unit, struct span span)
+static bool set_ray(struct line_packet *p, struct RTCRay16 *ray, unsigned lane, struct dvec3 origin, struct dvec3 unit,
+                    struct span span)
 {
     const struct reference *r = p->reference;
     if (dbox_is_empty(&r->box))
@@ -54,7 +55,10 @@ static void packet_begin(struct line_packet *p, int valid[LANES])
 }
 
 /* Lanes that are not used still go through the filter: they need numbers. */
-static void lane_clear(struct lanes *lanes, unsigned lane) { lanes->x[lane] = lanes->y[lane] = lanes->z[lane] = lanes->error[lane] = 0; }
+static void lane_clear(struct lanes *lanes, unsigned lane)
+{
+    lanes->x[lane] = lanes->y[lane] = lanes->z[lane] = lanes->error[lane] = 0;
+}
 
 void lines_find_visible(struct line_packet *p, const struct view *view, unsigned active)
 {

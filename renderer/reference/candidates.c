@@ -41,8 +41,12 @@ static void widened_box(const struct RTCBoundsFunctionArguments *args)
         dbox_add(&box, corners[i]);
     double m = part->reference->margin;
     *args->bounds_o = (struct RTCBounds){
-        .lower_x = below(box.min.x - m), .lower_y = below(box.min.y - m), .lower_z = below(box.min.z - m),
-        .upper_x = above(box.max.x + m), .upper_y = above(box.max.y + m), .upper_z = above(box.max.z + m),
+        .lower_x = below(box.min.x - m),
+        .lower_y = below(box.min.y - m),
+        .lower_z = below(box.min.z - m),
+        .upper_x = above(box.max.x + m),
+        .upper_y = above(box.max.y + m),
+        .upper_z = above(box.max.z + m),
     };
 }
 
@@ -111,7 +115,9 @@ bool candidates_build(struct reference *r, unsigned threads)
             .instance = (uint32_t)i,
             .first_triangle = instance->first_triangle,
             .holes = material_has_holes(material),
-            .hidden = material->double_sided ? 0 : instance->mirrored ? -1 : 1,
+            .hidden = material->double_sided ? 0
+                      : instance->mirrored   ? -1
+                                             : 1,
         };
     }
     measure(r);

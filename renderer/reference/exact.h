@@ -11,9 +11,9 @@
 /* A point on a sample's line, exactly. Perspective camera rays are known by their direction, whose line goes through the eye. */
 struct exact_point {
     enum { EXACT_POINT, EXACT_DIRECTION, EXACT_ON_PLANE } kind;
-    struct dvec3 v;                                /* the point, or the direction */
-    struct dvec3 ray_origin, ray_direction;        /* EXACT_ON_PLANE: where this ray (not unit) ... */
-    struct dvec3 plane[3];                         /* ... meets the plane of these three points; not parallel to it */
+    struct dvec3 v;                         /* the point, or the direction */
+    struct dvec3 ray_origin, ray_direction; /* EXACT_ON_PLANE: where this ray (not unit) ... */
+    struct dvec3 plane[3];                  /* ... meets the plane of these three points; not parallel to it */
 };
 
 /* What all lines of a packet go through: the eye, the light, or (infinite) a direction they share. */

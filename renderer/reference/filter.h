@@ -15,8 +15,8 @@
 #include "base/dmath.h"
 #include "reference/exact.h"
 
-#define FILTER_ROUNDING 0x1p-49 /* 16 u */
-#define FILTER_UNDERFLOW 1e-300
+#define FILTER_ROUNDING       0x1p-49 /* 16 u */
+#define FILTER_UNDERFLOW      1e-300
 #define FILTER_COORDINATE_MAX 1e18
 
 enum { LANES = 16 };

@@ -175,7 +175,8 @@ void lines_meet_triangle(const struct RTCIntersectFunctionNArguments *args)
     }
 }
 
-static bool blocks(struct line_packet *p, const struct candidate *c, unsigned lane, bool sure_inside, bool sure_side, int light_side)
+static bool blocks(struct line_packet *p, const struct candidate *c, unsigned lane, bool sure_inside, bool sure_side,
+                   int light_side)
 {
     if (!sure_inside || !sure_side) {
         struct exact_point point = line_point(p, lane, true);

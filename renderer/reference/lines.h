@@ -7,21 +7,21 @@
 
 /* What a sample sees, and where. */
 struct receiver {
-    uint32_t id;                     /* SCENE_NONE: nothing */
-    struct dvec3 origin, direction;  /* the sample's ray, view_ray() */
+    uint32_t id;                    /* SCENE_NONE: nothing */
+    struct dvec3 origin, direction; /* the sample's ray, view_ray() */
 };
 
 struct line_packet {
     struct RTCIntersectContext base; /* first: callbacks get at the rest through it */
     const struct reference *reference;
     struct exact_apex apex;
-    bool directions;                 /* perspective camera: lanes hold directions */
+    bool directions; /* perspective camera: lanes hold directions */
     struct lanes lanes;
-    struct receiver receiver[LANES]; /* camera: found so far; shadow: where the lines start */
-    double near, far;                /* camera */
+    struct receiver receiver[LANES];         /* camera: found so far; shadow: where the lines start */
+    double near, far;                        /* camera */
     double depth[LANES], depth_error[LANES]; /* camera: of what was found */
     double start[LANES], length[LANES];      /* distance along the line at Embree's t = 0; length of `direction` */
-    struct dvec3 point[LANES];       /* shadow: the receiver's point in double (docs/truth.md, "Points in double") */
+    struct dvec3 point[LANES];               /* shadow: the receiver's point in double (docs/truth.md, "Points in double") */
     uint64_t rays, tests, exact;
 };
 
@@ -33,7 +33,8 @@ static inline struct exact_apex light_apex(const struct light *light)
 }
 
 /* Certain sign of N . (apex - a), or N . direction. */
-int lines_apex_side(struct line_packet *p, const struct exact_apex *apex, const struct dvec3 corners[3], const struct form *plane);
+int lines_apex_side(struct line_packet *p, const struct exact_apex *apex, const struct dvec3 corners[3],
+                    const struct form *plane);
 
 /* Nearest visible triangle of each ray in `active` (bit a lane): fills receiver[].id. origin and direction must be set. */
 void lines_find_visible(struct line_packet *p, const struct view *view, unsigned active);

@@ -137,8 +137,10 @@ static void merge(struct metrics_pool *pool, const struct metrics *m, const stru
     pool->one_receivers += sums->one;
     pool->shift_sum = summarise_shifts(pool->shifts, pool->shift_count, total);
     pool->shift_vertices = pool->shift_count;
-    const struct sums all = {.square = pool->square_sum, .square_one = pool->square_sum_one,
-                             .boundary_square = pool->boundary_square_sum, .one = pool->one_receivers};
+    const struct sums all = {.square = pool->square_sum,
+                             .square_one = pool->square_sum_one,
+                             .boundary_square = pool->boundary_square_sum,
+                             .one = pool->one_receivers};
     derive(total, &all, one_measured);
 }
 

@@ -7,10 +7,10 @@
 
 struct metrics_input {
     uint32_t width, height;
-    const float *visibility;       /* tested, [0,1] */
-    const float *reference;        /* [0,1] */
-    const uint8_t *receiver;       /* 1 where the pixel counts */
-    const uint8_t *one_triangle;   /* 1 where all 32 samples hit one triangle; NULL: rmse_one_receiver is not a number */
+    const float *visibility;               /* tested, [0,1] */
+    const float *reference;                /* [0,1] */
+    const uint8_t *receiver;               /* 1 where the pixel counts */
+    const uint8_t *one_triangle;           /* 1 where all 32 samples hit one triangle; NULL: rmse_one_receiver is not a number */
     const uint32_t *mask, *mask_reference; /* 32-sample masks; NULL unless both sides have them */
 };
 
@@ -21,11 +21,13 @@ struct metrics {
     double rmse, max_abs;          /* over receivers */
     double rmse_one_receiver;      /* NAN: not measured */
     int64_t wrong_samples;         /* -1: not measured */
-    uint64_t leaks, acne;          /* misclassified pixels all of whose 5 x 5 neighbours that are receivers have reference < 0.5, or >= 0.5 */
+    uint64_t leaks,
+        acne; /* misclassified pixels all of whose 5 x 5 neighbours that are receivers have reference < 0.5, or >= 0.5 */
     struct {
-        uint64_t pixels;           /* receivers with both reference classes in their 3 x 3 */
-        double rmse;               /* over those */
-        double edge_shift_mean, edge_shift_p95, edge_shift_max; /* 1/32 px; contour at V = 0.5, capped at 8 px; max = symmetric Hausdorff */
+        uint64_t pixels; /* receivers with both reference classes in their 3 x 3 */
+        double rmse;     /* over those */
+        double edge_shift_mean, edge_shift_p95,
+            edge_shift_max; /* 1/32 px; contour at V = 0.5, capped at 8 px; max = symmetric Hausdorff */
     } boundary;
 };
 

@@ -25,7 +25,9 @@ static void place_point(struct line_packet *p, unsigned lane, const struct form 
     double error = d * t_error + 0x1p-51 * (d * fabs(t) + largest(point));
     p->point[lane] = point;
     if (!(error < p->reference->scale * 0x1p-32)) {
-        struct exact_point exact = {.kind = EXACT_ON_PLANE, .ray_origin = at->origin, .ray_direction = at->direction,
+        struct exact_point exact = {.kind = EXACT_ON_PLANE,
+                                    .ray_origin = at->origin,
+                                    .ray_direction = at->direction,
                                     .plane = {corners[0], corners[1], corners[2]}};
         point = exact_round_point(&exact);
         error = 0x1p-51 * largest(point);

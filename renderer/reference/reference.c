@@ -119,8 +119,15 @@ bool reference_point(const struct reference *r, const struct view *view, const s
                      struct job_pool *pool, const struct reference_progress *progress, float *visibility, uint8_t *receiver,
                      struct reference_counts *counts)
 {
-    struct picture_job job = {.reference = r, .view = view, .light = light, .progress = progress, .pixels = point_pixels, .step = 4,
-                              .ids = ids, .visibility = visibility, .receiver = receiver};
+    struct picture_job job = {.reference = r,
+                              .view = view,
+                              .light = light,
+                              .progress = progress,
+                              .pixels = point_pixels,
+                              .step = 4,
+                              .ids = ids,
+                              .visibility = visibility,
+                              .receiver = receiver};
     return run(&job, pool, counts);
 }
 
@@ -134,7 +141,8 @@ static void sample_pixel(struct picture_job *job, struct line_packet *packet, ui
         unsigned active = 0;
         for (unsigned lane = 0; lane < LANES; lane++) {
             const float *at = view_samples32[half * LANES + lane];
-            view_ray(view, x + (double)at[0], y + (double)at[1], &packet->receiver[lane].origin, &packet->receiver[lane].direction);
+            view_ray(view, x + (double)at[0], y + (double)at[1], &packet->receiver[lane].origin,
+                     &packet->receiver[lane].direction);
         }
         lines_find_visible(packet, view, (1u << LANES) - 1);
         if (half == 0)
@@ -159,7 +167,14 @@ bool reference_samples32(const struct reference *r, const struct view *view, con
                          const struct reference_progress *progress, uint32_t *receivers, uint32_t *lit, uint8_t *one_triangle,
                          struct reference_counts *counts)
 {
-    struct picture_job job = {.reference = r, .view = view, .light = light, .progress = progress, .pixels = sample_pixel, .step = 1,
-                              .receivers = receivers, .lit = lit, .one_triangle = one_triangle};
+    struct picture_job job = {.reference = r,
+                              .view = view,
+                              .light = light,
+                              .progress = progress,
+                              .pixels = sample_pixel,
+                              .step = 1,
+                              .receivers = receivers,
+                              .lit = lit,
+                              .one_triangle = one_triangle};
     return run(&job, pool, counts);
 }

@@ -27,9 +27,9 @@ void reference_destroy(struct reference *r);
 size_t reference_bytes(const struct reference *r);
 
 struct reference_counts {
-    uint64_t rays;      /* primary and shadow */
-    uint64_t tests;     /* ray against triangle */
-    uint64_t exact;     /* of those, decided by rational arithmetic */
+    uint64_t rays;  /* primary and shadow */
+    uint64_t tests; /* ray against triangle */
+    uint64_t exact; /* of those, decided by rational arithmetic */
 };
 
 /* Called now and then from any worker with done in [0, 1]; return false to stop early. */

@@ -19,10 +19,7 @@ struct by_mesh {
     uint32_t *instances;
 };
 
-static bool finite3(const float v[3])
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
+static bool finite3(const float v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
 
 static void collect_used(const struct scene *scene, uint32_t mesh_index, struct used_vertices *used)
 {

@@ -4,7 +4,7 @@
 #define PLANAR_TOLERANCE 1e-6
 /* Box and triangle tests spent in all: past them a planar instance counts as lying between others, which costs accuracy of the shadow
  * maps' fit, never correctness. */
-#define TEST_BUDGET ((size_t)1 << 25)
+#define TEST_BUDGET      ((size_t)1 << 25)
 
 struct plane {
     struct dvec3 normal, point;
@@ -15,10 +15,7 @@ struct sides {
     bool front, back; /* geometry strictly on that side */
 };
 
-static double height(const struct plane *plane, struct dvec3 p)
-{
-    return dvec3_dot(dvec3_sub(p, plane->point), plane->normal);
-}
+static double height(const struct plane *plane, struct dvec3 p) { return dvec3_dot(dvec3_sub(p, plane->point), plane->normal); }
 
 static void add_point(const struct plane *plane, struct dvec3 p, struct sides *sides)
 {
@@ -31,15 +28,16 @@ static struct sides box_sides(const struct plane *plane, const struct dbox *box)
 {
     struct sides sides = {false, false};
     for (int k = 0; k < 8; k++) {
-        struct dvec3 corner = dvec3(k & 1 ? box->max.x : box->min.x, k & 2 ? box->max.y : box->min.y, k & 4 ? box->max.z : box->min.z);
+        struct dvec3 corner =
+            dvec3(k & 1 ? box->max.x : box->min.x, k & 2 ? box->max.y : box->min.y, k & 4 ? box->max.z : box->min.z);
         add_point(plane, corner, &sides);
     }
     return sides;
 }
 
 /* Exact, over the triangles; used only where the box lies on both sides. */
-static void add_triangles(const struct scene *scene, const struct instance *instance, const struct plane *plane, struct sides *sides,
-                          size_t *budget)
+static void add_triangles(const struct scene *scene, const struct instance *instance, const struct plane *plane,
+                          struct sides *sides, size_t *budget)
 {
     uint32_t triangles = scene->meshes[instance->mesh].index_count / 3;
     if (triangles >= *budget) {
@@ -52,8 +50,8 @@ static void add_triangles(const struct scene *scene, const struct instance *inst
 }
 
 /* False when the budget ran out. */
-static bool sides_of_others(const struct scene *scene, const struct instance *self, const struct plane *plane, struct sides *sides,
-                            size_t *budget)
+static bool sides_of_others(const struct scene *scene, const struct instance *self, const struct plane *plane,
+                            struct sides *sides, size_t *budget)
 {
     for (size_t i = 0; i < scene->instance_count && !(sides->front && sides->back); i++) {
         const struct instance *other = &scene->instances[i];

@@ -38,23 +38,23 @@ struct texture {
 
 /* A material's use of a texture. */
 struct texture_use {
-    uint32_t texture;     /* SCENE_NONE: not textured */
-    uint32_t texcoord;    /* 0 or 1 */
+    uint32_t texture;      /* SCENE_NONE: not textured */
+    uint32_t texcoord;     /* 0 or 1 */
     float transform[2][3]; /* KHR_texture_transform, rows: uv' = transform * (u, v, 1); identity if absent */
 };
 
 /* glTF metallic-roughness. */
 struct material {
     char name[64];
-    float base_color[4];  /* linear, [0,1] */
-    float metallic;       /* [0,1] */
-    float roughness;      /* [0,1] */
-    float emissive[3];    /* linear, >= 0 */
+    float base_color[4]; /* linear, [0,1] */
+    float metallic;      /* [0,1] */
+    float roughness;     /* [0,1] */
+    float emissive[3];   /* linear, >= 0 */
     float normal_scale;
     float occlusion_strength; /* [0,1] */
     enum alpha_mode alpha_mode;
-    float alpha_cutoff;   /* BLEND: 0.5, since it counts as MASK in the id buffer and as a caster */
-    bool double_sided;    /* false: back faces are hidden from the camera only; every triangle casts */
+    float alpha_cutoff; /* BLEND: 0.5, since it counts as MASK in the id buffer and as a caster */
+    bool double_sided;  /* false: back faces are hidden from the camera only; every triangle casts */
     bool unlit;
     struct texture_use base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture;
 };
@@ -76,12 +76,12 @@ struct mesh {
 /* A mesh placed in the scene; every drawn triangle belongs to exactly one. */
 struct instance {
     uint32_t mesh;
-    struct affine to_scene;   /* before scene_finish(): to world */
+    struct affine to_scene; /* before scene_finish(): to world */
 
     /* Set by scene_finish(). */
-    uint32_t first_triangle;  /* drawn-triangle id of its triangle 0; ids run on over the instances in order */
-    bool mirrored;            /* determinant < 0: front faces are clockwise */
-    struct dbox bounds;       /* scene space; empty when nothing finite */
+    uint32_t first_triangle; /* drawn-triangle id of its triangle 0; ids run on over the instances in order */
+    bool mirrored;           /* determinant < 0: front faces are clockwise */
+    struct dbox bounds;      /* scene space; empty when nothing finite */
     /* A planar instance casts no shadow from a light that has everything else on its own side.
      * +1: all other geometry lies on the side the plane's normal (cross product of its first non-degenerate triangle's
      * edges, scene space) points to, -1: on the other side, 2: nothing else on either side, 0: not planar or on both sides. */
@@ -110,10 +110,10 @@ struct camera {
     char name[64];
     bool orthographic;
     struct dvec3 eye, right, up, back;
-    double yfov;   /* perspective: full vertical angle, (0, pi) */
-    double ymag;   /* orthographic: half the height, > 0 */
-    double near;   /* along -back, > 0 (perspective) or >= 0 (orthographic); nothing nearer is seen */
-    double far;    /* > near; INFINITY: no limit */
+    double yfov; /* perspective: full vertical angle, (0, pi) */
+    double ymag; /* orthographic: half the height, > 0 */
+    double near; /* along -back, > 0 (perspective) or >= 0 (orthographic); nothing nearer is seen */
+    double far;  /* > near; INFINITY: no limit */
 };
 
 struct scene {
@@ -121,13 +121,13 @@ struct scene {
     struct dvec3 origin; /* world position of scene space's (0, 0, 0) */
 
     float (*positions)[3];
-    float (*normals)[3];    /* unit; made from faces where the file has none */
+    float (*normals)[3]; /* unit; made from faces where the file has none */
     size_t vertex_count;
     uint32_t *indices;
     size_t index_count;
     float (*texcoords)[2];
     size_t texcoord_count;
-    float (*colors)[4];     /* linear */
+    float (*colors)[4]; /* linear */
     size_t color_count;
 
     struct mesh *meshes;
@@ -140,16 +140,16 @@ struct scene {
     size_t texture_count;
     struct image *images;
     size_t image_count;
-    struct light *lights;   /* as the file has them: may be none, see scene_default_light() */
+    struct light *lights; /* as the file has them: may be none, see scene_default_light() */
     size_t light_count;
     struct camera *cameras; /* as the file has them: may be none, see scene_default_camera() */
     size_t camera_count;
 
     /* Set by scene_finish(). */
-    size_t triangle_count;  /* stored, over all meshes */
+    size_t triangle_count;       /* stored, over all meshes */
     size_t drawn_triangle_count; /* over all instances; < 2^32 - 1 */
-    struct dbox bounds;     /* of all instances, scene space */
-    uint64_t hash;          /* of everything that a picture depends on */
+    struct dbox bounds;          /* of all instances, scene space */
+    uint64_t hash;               /* of everything that a picture depends on */
 };
 
 /* Loads a .gltf/.glb path or `builtin:NAME[:key=value,...]`. Errors: ERROR_NO_INPUT (no such file), ERROR_DATA, ERROR_USAGE (unknown

@@ -20,7 +20,8 @@ struct view {
     /* The picture's edges on the plane one unit in front of the eye (perspective: tangents) or in scene units
      * (orthographic); left < right_edge, bottom < top. */
     double left, right_edge, bottom, top;
-    double near, far; /* along forward; 0 < near < far (perspective), near < far (orthographic, may be negative); far may be INFINITY
+    double near,
+        far; /* along forward; 0 < near < far (perspective), near < far (orthographic, may be negative); far may be INFINITY
                          in perspective only */
 };
 

@@ -19,7 +19,7 @@ struct fit_geometry {
     const struct scene *scene;
     struct fit_box {
         float min[3], max[3];
-    } *boxes;
+    } * boxes;
     size_t *first_box; /* per mesh, mesh_count + 1 entries */
 };
 

@@ -42,8 +42,8 @@ static void encode_row(void *context, size_t row, unsigned worker)
     }
 }
 
-static bool trace_map(struct light_maps *m, const struct shadow_input *in, const struct tracer *tracer, unsigned layer, float *texels,
-                      struct error *err)
+static bool trace_map(struct light_maps *m, const struct shadow_input *in, const struct tracer *tracer, unsigned layer,
+                      float *texels, struct error *err)
 {
     const struct view *view = &in->fit->maps[layer];
     tracer_light(tracer, view, in->fit->casters, in->fit->caster_count, in->pool, texels, NULL);
@@ -61,7 +61,8 @@ static bool trace_maps(struct light_maps *m, const struct shadow_input *in, stru
         return false;
     const struct view *first = &in->fit->maps[0];
     float *texels = malloc((size_t)first->width * first->height * sizeof *texels);
-    bool ok = texels || error_set(err, ERROR_TRY_AGAIN, "size", "out of memory for a map of %u x %u", first->width, first->height);
+    bool ok =
+        texels || error_set(err, ERROR_TRY_AGAIN, "size", "out of memory for a map of %u x %u", first->width, first->height);
     for (unsigned i = 0; ok && i < in->fit->map_count; i++)
         ok = trace_map(m, in, tracer, i, texels, err);
     free(texels);

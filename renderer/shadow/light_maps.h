@@ -10,11 +10,11 @@
 #include "shadow/shadow.h"
 
 struct light_maps {
-    struct gl_texture depth;   /* D32F array, a layer a map; encoding: shaders/maps.glsl */
+    struct gl_texture depth; /* D32F array, a layer a map; encoding: shaders/maps.glsl */
     struct gl_target target;
     struct draw_view draw;
-    struct gl_buffer block;    /* maps_block, relative to the camera of the last bind */
-    struct shadow_fit fit;     /* as rendered; casters not kept */
+    struct gl_buffer block; /* maps_block, relative to the camera of the last bind */
+    struct shadow_fit fit;  /* as rendered; casters not kept */
 };
 
 /* A system whose state is one struct light_maps names these three in its descriptor. prepare renders all maps of in->fit. */

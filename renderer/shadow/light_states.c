@@ -94,7 +94,8 @@ static bool prepare(struct light_state *state, const struct fit_geometry *geomet
         casters = malloc((geometry->scene->instance_count + 1) * sizeof *casters);
         if (!casters)
             return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for shadows");
-        shadow_fit_compute(geometry, in->light, (uint32_t)in->params[size], fit >= 0 && in->params[fit] == 1, casters, &state->fit);
+        shadow_fit_compute(geometry, in->light, (uint32_t)in->params[size], fit >= 0 && in->params[fit] == 1, casters,
+                           &state->fit);
         in->fit = &state->fit;
     }
     bool ok = !system->prepare || system->prepare(state->state, in, err);
@@ -103,8 +104,9 @@ static bool prepare(struct light_state *state, const struct fit_geometry *geomet
     return ok;
 }
 
-struct light_state *light_states_get(struct light_states *s, const struct fit_geometry *geometry, const struct shadow_system *system,
-                                     const struct shadow_params *params, struct shadow_input *in, bool *rebuilt, struct error *err)
+struct light_state *light_states_get(struct light_states *s, const struct fit_geometry *geometry,
+                                     const struct shadow_system *system, const struct shadow_params *params,
+                                     struct shadow_input *in, bool *rebuilt, struct error *err)
 {
     in->params = params->value;
     struct light_state *state = find(s, system, params, in);

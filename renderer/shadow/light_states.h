@@ -16,12 +16,12 @@ struct light_state {
     struct shadow_params params;
     struct light light;
     unsigned light_index;
-    uint32_t viewer;          /* the last to ask; with light_index: whose structure is built anew when its light moves */
+    uint32_t viewer; /* the last to ask; with light_index: whose structure is built anew when its light moves */
     bool prepared;
-    bool traced;              /* its maps were traced */
+    bool traced; /* its maps were traced */
     uint64_t last_frame;
-    struct shadow_fit fit;    /* casters not kept */
-    void *state;              /* system->state_size bytes */
+    struct shadow_fit fit; /* casters not kept */
+    void *state;           /* system->state_size bytes */
     struct light_state *next;
 };
 
@@ -34,8 +34,9 @@ struct light_states {
 void light_states_begin(struct light_states *s);
 
 /* The state for in->light, prepared. `in` is complete but for fit, which this fills. rebuilt: set to true if prepare ran, else untouched. */
-struct light_state *light_states_get(struct light_states *s, const struct fit_geometry *geometry, const struct shadow_system *system,
-                                     const struct shadow_params *params, struct shadow_input *in, bool *rebuilt, struct error *err);
+struct light_state *light_states_get(struct light_states *s, const struct fit_geometry *geometry,
+                                     const struct shadow_system *system, const struct shadow_params *params,
+                                     struct shadow_input *in, bool *rebuilt, struct error *err);
 
 /* Forgets everything built: the next frame prepares anew (programs were reloaded). */
 void light_states_invalidate(struct light_states *s);

@@ -5,8 +5,14 @@
 static const struct param_desc params[] = {
     SHADOW_MAP_PARAMS,
     SHADOW_BIAS_PARAMS(0.006, 0.25),
-    {.name = "kernel", .unit = "texels", .help = "Side of the square of texels that are compared.", .kind = PARAM_INT, .min = 1,
-     .max = 31, .initial = 5, .odd = true},
+    {.name = "kernel",
+     .unit = "texels",
+     .help = "Side of the square of texels that are compared.",
+     .kind = PARAM_INT,
+     .min = 1,
+     .max = 31,
+     .initial = 5,
+     .odd = true},
 };
 
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)

@@ -18,17 +18,29 @@ static const char *const samples_choices[] = {"1", "32", NULL};
 static const char *const tracer_choices[] = {"exact", "embree", NULL};
 
 static const struct param_desc params[] = {
-    {.name = "samples", .unit = "a pixel", .help = "1: the pixel centre's receiver; 32: each sample has its own.", .kind = PARAM_CHOICE,
-     .min = 0, .max = 1, .initial = 0, .choices = samples_choices},
-    {.name = "tracer", .unit = "", .help = "exact: exact arithmetic where it matters; embree: plain single-precision rays, for speed.",
-     .kind = PARAM_CHOICE, .min = 0, .max = 1, .initial = TRACER_EXACT, .choices = tracer_choices},
+    {.name = "samples",
+     .unit = "a pixel",
+     .help = "1: the pixel centre's receiver; 32: each sample has its own.",
+     .kind = PARAM_CHOICE,
+     .min = 0,
+     .max = 1,
+     .initial = 0,
+     .choices = samples_choices},
+    {.name = "tracer",
+     .unit = "",
+     .help = "exact: exact arithmetic where it matters; embree: plain single-precision rays, for speed.",
+     .kind = PARAM_CHOICE,
+     .min = 0,
+     .max = 1,
+     .initial = TRACER_EXACT,
+     .choices = tracer_choices},
 };
 
 struct state {
     float *visibility;
     uint32_t *receivers, *lit; /* 32 samples */
     size_t pixels;
-    bool masks;                /* receivers and lit have room too */
+    bool masks; /* receivers and lit have room too */
 };
 
 static bool reserve(struct state *s, size_t pixels, bool masks, struct error *err)
@@ -85,8 +97,10 @@ static bool trace_samples(struct state *s, const struct shadow_input *in, bool e
 static void upload(const struct shadow_input *in, const float *visibility)
 {
     GLint texture, layer;
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &texture);
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER, &layer);
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
+                                          &texture);
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
+                                          &layer);
     glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
                         visibility);
 }

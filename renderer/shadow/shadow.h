@@ -24,9 +24,9 @@ struct gl_context;
 enum param_kind { PARAM_INT, PARAM_FLOAT, PARAM_CHOICE };
 
 struct param_desc {
-    const char *name;           /* [a-z_]+ */
-    const char *unit;           /* "texels", "scene units", "" */
-    const char *help;           /* one sentence */
+    const char *name; /* [a-z_]+ */
+    const char *unit; /* "texels", "scene units", "" */
+    const char *help; /* one sentence */
     enum param_kind kind;
     double min, max, initial;   /* PARAM_CHOICE: 0, choices - 1, index of the default */
     const char *const *choices; /* PARAM_CHOICE: NULL-terminated names; a numeric choice may be written as its number */
@@ -44,10 +44,10 @@ struct shadow_params {
 
 /* What a light's maps see: the same for every map system (shadow/fit.h). Part of the tight fit: casters only. */
 struct shadow_fit {
-    unsigned map_count;               /* 0: no casters */
+    unsigned map_count;                /* 0: no casters */
     struct view maps[SHADOW_MAPS_MAX]; /* square: width = height = the size parameter */
-    double fov_deg[SHADOW_MAPS_MAX];  /* widest full angle of the map; 0 for a directional light */
-    const uint32_t *casters;          /* instances that cast, ascending; valid during the call */
+    double fov_deg[SHADOW_MAPS_MAX];   /* widest full angle of the map; 0 for a directional light */
+    const uint32_t *casters;           /* instances that cast, ascending; valid during the call */
     size_t caster_count;
 };
 
@@ -55,45 +55,45 @@ struct shadow_input {
     const struct scene *scene;
     const struct light *light;
     unsigned light_index;
-    uint32_t viewer;                  /* whose picture: light_states.h */
-    const struct shadow_fit *fit;     /* NULL for systems without SHADOW_USES_MAPS */
-    const double *params;             /* the values, in the order of the system's descriptors */
-    const struct view *view;          /* the camera; resolve, and prepare of view-driven systems */
-    struct gbuffer *gbuffer;          /* likewise */
-    struct draw_scene *draw;          /* the scene on the GPU */
+    uint32_t viewer;              /* whose picture: light_states.h */
+    const struct shadow_fit *fit; /* NULL for systems without SHADOW_USES_MAPS */
+    const double *params;         /* the values, in the order of the system's descriptors */
+    const struct view *view;      /* the camera; resolve, and prepare of view-driven systems */
+    struct gbuffer *gbuffer;      /* likewise */
+    struct draw_scene *draw;      /* the scene on the GPU */
     /* The scene's ray tracers, made when first asked for; NULL with err set when that failed. */
     const struct tracer *(*tracer)(void *owner, struct error *err);
     const struct reference *(*reference)(void *owner, struct error *err);
     void *owner;
-    bool trace_maps;                  /* make depth maps by tracing (draw/producer.h) */
+    bool trace_maps; /* make depth maps by tracing (draw/producer.h) */
     struct job_pool *pool;
     struct gl_context *gl;
 };
 
 enum shadow_flags {
-    SHADOW_USES_MAPS = 1,     /* wants shadow_fit; must have a parameter "size" */
-    SHADOW_VIEW_DRIVEN = 2,   /* prepare runs every frame, with view and gbuffer; state per view too */
-    SHADOW_NO_SHADOWS = 4,    /* answers 1 for every receiver: full cover need not be dark */
-    SHADOW_BINARY = 8,        /* values are 0 or 1 only */
-    SHADOW_EXACT = 16,        /* promises the reference's own answer: error test demands 0 */
+    SHADOW_USES_MAPS = 1,   /* wants shadow_fit; must have a parameter "size" */
+    SHADOW_VIEW_DRIVEN = 2, /* prepare runs every frame, with view and gbuffer; state per view too */
+    SHADOW_NO_SHADOWS = 4,  /* answers 1 for every receiver: full cover need not be dark */
+    SHADOW_BINARY = 8,      /* values are 0 or 1 only */
+    SHADOW_EXACT = 16,      /* promises the reference's own answer: error test demands 0 */
 };
 
 struct shadow_system {
-    const char *name;                 /* [a-z0-9_]+: wire, CLI, golden files */
-    const char *title;                /* shown in the viewer */
-    const char *help;                 /* one sentence */
-    unsigned lights;                  /* 1 << enum light_kind, or-ed */
-    unsigned flags;                   /* enum shadow_flags */
+    const char *name;  /* [a-z0-9_]+: wire, CLI, golden files */
+    const char *title; /* shown in the viewer */
+    const char *help;  /* one sentence */
+    unsigned lights;   /* 1 << enum light_kind, or-ed */
+    unsigned flags;    /* enum shadow_flags */
     const struct param_desc *params;
-    size_t param_count;               /* <= SHADOW_PARAM_MAX */
-    size_t state_size;                /* per light, shared by all views; zeroed, owned by the framework; 0: none */
+    size_t param_count; /* <= SHADOW_PARAM_MAX */
+    size_t state_size;  /* per light, shared by all views; zeroed, owned by the framework; 0: none */
 
     bool (*init)(void *state, const struct shadow_input *in, struct error *err);    /* optional: allocations, programs */
     bool (*prepare)(void *state, const struct shadow_input *in, struct error *err); /* optional: maps, lists, trees */
     /* Writes one value in [0, 1] per pixel to the framebuffer bound by the framework (one R32F colour attachment of the picture's
      * size, cleared to 0); 0 where there is no receiver (shaders/receiver.glsl). */
     bool (*resolve)(void *state, const struct shadow_input *in, struct error *err);
-    void (*finish)(void *state);      /* optional; accepts half-initialised state */
+    void (*finish)(void *state);        /* optional; accepts half-initialised state */
     size_t (*bytes)(const void *state); /* optional: what the state holds on the GPU and CPU, now */
 };
 

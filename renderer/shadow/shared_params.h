@@ -10,18 +10,33 @@ extern const char *const shadow_fit_choices[];
 enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT };
 
 /* The first two descriptors of every map system. */
-#define SHADOW_MAP_PARAMS                                                                                              \
-    {.name = "size", .unit = "texels", .help = "Side of each map.", .kind = PARAM_INT, .min = 16, .max = 16384, .initial = 1024},   \
-    {.name = "fit", .unit = "", .help = "tight: one map around the casters where it can be; cube: always cube faces.",              \
-     .kind = PARAM_CHOICE, .min = 0, .max = 1, .initial = 0, .choices = shadow_fit_choices}
+#define SHADOW_MAP_PARAMS                                                                                                 \
+    {.name = "size",                                                                                                      \
+     .unit = "texels",                                                                                                    \
+     .help = "Side of each map.",                                                                                         \
+     .kind = PARAM_INT,                                                                                                   \
+     .min = 16,                                                                                                           \
+     .max = 16384,                                                                                                        \
+     .initial = 1024},                                                                                                    \
+    {                                                                                                                     \
+        .name = "fit", .unit = "", .help = "tight: one map around the casters where it can be; cube: always cube faces.", \
+        .kind = PARAM_CHOICE, .min = 0, .max = 1, .initial = 0, .choices = shadow_fit_choices                             \
+    }
 
 /* The next two of those that compare depths with a bias. Defaults: the pair with the fewest misclassified pixels over the four
  * paper models at size 1024 (docs/bias.md). */
-#define SHADOW_BIAS_PARAMS(bias_default, slope_default)                                                                                             \
-    {.name = "bias", .unit = "scene units", .help = "Depth by which a point may lie behind the stored surface and still be lit.",   \
-     .kind = PARAM_FLOAT, .min = 0, .max = 1e6, .initial = (bias_default)},                                                         \
-    {.name = "slope", .unit = "", .help = "More of it: times a texel's size times the tangent of the angle of incidence.",          \
-     .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = (slope_default)}
+#define SHADOW_BIAS_PARAMS(bias_default, slope_default)                                                                       \
+    {.name = "bias",                                                                                                          \
+     .unit = "scene units",                                                                                                   \
+     .help = "Depth by which a point may lie behind the stored surface and still be lit.",                                    \
+     .kind = PARAM_FLOAT,                                                                                                     \
+     .min = 0,                                                                                                                \
+     .max = 1e6,                                                                                                              \
+     .initial = (bias_default)},                                                                                              \
+    {                                                                                                                         \
+        .name = "slope", .unit = "", .help = "More of it: times a texel's size times the tangent of the angle of incidence.", \
+        .kind = PARAM_FLOAT, .min = 0, .max = 1e3, .initial = (slope_default)                                                 \
+    }
 
 struct light_maps;
 

@@ -70,7 +70,8 @@ struct light_job {
     uint32_t *ids;
 };
 
-static void write_depths(const struct light_job *job, const int valid[LANES], const struct RTCRayHit16 *packet, uint32_t x, uint32_t y)
+static void write_depths(const struct light_job *job, const int valid[LANES], const struct RTCRayHit16 *packet, uint32_t x,
+                         uint32_t y)
 {
     uint32_t ids[LANES];
     hit_ids(job->tracer, &packet->hit, ids);
@@ -104,8 +105,8 @@ static void light_tile(void *context, size_t index, unsigned worker)
         }
 }
 
-void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count, struct job_pool *pool,
-                  float *depths, uint32_t *ids)
+void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count,
+                  struct job_pool *pool, float *depths, uint32_t *ids)
 {
     struct light_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .depths = depths, .ids = ids};
     job.offsets = ray_offsets_pixels(&job.frame);

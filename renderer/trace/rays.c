@@ -84,7 +84,8 @@ void ray_frame_start(const struct ray_frame *f, struct RTCRayHit16 *packet)
     fill(f->orthographic ? r->dir_z : r->org_z, f->shared.z, none);
 }
 
-void ray_frame_packet(const struct ray_frame *f, const struct ray_offsets *offsets, double x, double y, struct RTCRayHit16 *packet)
+void ray_frame_packet(const struct ray_frame *f, const struct ray_offsets *offsets, double x, double y,
+                      struct RTCRayHit16 *packet)
 {
     struct RTCRay16 *r = &packet->ray;
     const struct dvec3 at = dvec3_mad(dvec3_mad(f->varying, f->dx, x), f->dy, y);
@@ -109,20 +110,17 @@ void hit_ids(const struct tracer *t, const struct RTCHit16 *hit, uint32_t ids[LA
 {
     const struct instance *instances = t->scene->instances;
     for (int i = 0; i < LANES; i++)
-        ids[i] = hit->geomID[i] == RTC_INVALID_GEOMETRY_ID ? SCENE_NONE
-                                                           : instances[hit->geomID[i]].first_triangle + hit->primID[i];
+        ids[i] =
+            hit->geomID[i] == RTC_INVALID_GEOMETRY_ID ? SCENE_NONE : instances[hit->geomID[i]].first_triangle + hit->primID[i];
 }
 
 /* True for a back face of a one-sided material. */
 static bool is_hidden(const struct tracer *t, unsigned instance, float facing)
 {
     switch (t->front[instance]) {
-    case FRONT_CCW:
-        return facing > 0;
-    case FRONT_CW:
-        return facing < 0;
-    default:
-        return false;
+    case FRONT_CCW: return facing > 0;
+    case FRONT_CW: return facing < 0;
+    default: return false;
     }
 }
 

@@ -18,9 +18,9 @@ struct tile tile_at(const struct view *view, size_t index);
  * of a picture is the direction (perspective) or the origin (orthographic): `varying`. */
 struct ray_frame {
     bool orthographic;
-    struct dvec3 shared;           /* the origin, or the direction */
-    struct dvec3 varying, dx, dy;  /* at picture position (0, 0), and per pixel */
-    double start;                  /* depth at t = 0 */
+    struct dvec3 shared;          /* the origin, or the direction */
+    struct dvec3 varying, dx, dy; /* at picture position (0, 0), and per pixel */
+    double start;                 /* depth at t = 0 */
     float tnear, tfar;
 };
 
@@ -39,7 +39,8 @@ struct ray_offsets ray_offsets_pixels(const struct ray_frame *f);
 /* Sets what all packets of a frame share. */
 void ray_frame_start(const struct ray_frame *f, struct RTCRayHit16 *packet);
 /* Sets the packet at picture position (x, y). */
-void ray_frame_packet(const struct ray_frame *f, const struct ray_offsets *offsets, double x, double y, struct RTCRayHit16 *packet);
+void ray_frame_packet(const struct ray_frame *f, const struct ray_offsets *offsets, double x, double y,
+                      struct RTCRayHit16 *packet);
 
 /* -1 for the lanes of the packet at pixel (x, y) that lie in the tile, else 0. True when all do. */
 bool tile_lanes(const struct tile *tile, uint32_t x, uint32_t y, int valid[LANES]);

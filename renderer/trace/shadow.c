@@ -36,7 +36,8 @@ struct shadow_packet {
 static float largest(float x, float y, float z) { return fmaxf(fmaxf(fabsf(x), fabsf(y)), fabsf(z)); }
 
 /* Aims one lane from point `p` with normal `n` (turned towards the eye, any length) at the light; false if it is no receiver. */
-static bool aim(struct shadow_packet *s, int lane, const struct light_frame *light, const float p[3], const float n[3], float depth)
+static bool aim(struct shadow_packet *s, int lane, const struct light_frame *light, const float p[3], const float n[3],
+                float depth)
 {
     struct RTCRay16 *r = &s->ray;
     float to[3], length = light->reach;
@@ -89,11 +90,13 @@ struct shadow_job {
 };
 
 /* Where the ray of a lane meets the plane of triangle `id`, and its normal turned towards the eye; false when parallel. */
-static bool plane_point(const struct tracer *t, uint32_t id, const struct RTCRay16 *ray, int lane, float p[3], float n[3], float *depth)
+static bool plane_point(const struct tracer *t, uint32_t id, const struct RTCRay16 *ray, int lane, float p[3], float n[3],
+                        float *depth)
 {
     uint32_t instance = scene_instance_of(t->scene, id);
     const struct mesh *mesh = &t->scene->meshes[t->scene->instances[instance].mesh];
-    const uint32_t *corner = t->scene->indices + mesh->first_index + 3 * (size_t)(id - t->scene->instances[instance].first_triangle);
+    const uint32_t *corner =
+        t->scene->indices + mesh->first_index + 3 * (size_t)(id - t->scene->instances[instance].first_triangle);
     const float o[3] = {ray->org_x[lane], ray->org_y[lane], ray->org_z[lane]};
     const float d[3] = {ray->dir_x[lane], ray->dir_y[lane], ray->dir_z[lane]};
     float v[3][3];
@@ -113,7 +116,8 @@ static bool plane_point(const struct tracer *t, uint32_t id, const struct RTCRay
     return slope != 0 && isfinite(*depth);
 }
 
-static void point_packet(const struct shadow_job *job, const struct tile *tile, const struct RTCRay16 *ray, uint32_t x, uint32_t y)
+static void point_packet(const struct shadow_job *job, const struct tile *tile, const struct RTCRay16 *ray, uint32_t x,
+                         uint32_t y)
 {
     struct shadow_packet s;
     int inside[LANES];
@@ -151,8 +155,12 @@ static void point_tile(void *context, size_t index, unsigned worker)
 void tracer_shadow_point(const struct tracer *t, const struct view *view, const struct light *light, const uint32_t *ids,
                          struct job_pool *pool, float *visibility)
 {
-    struct shadow_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .light = light_frame_make(t->scene, light),
-                             .ids = ids, .visibility = visibility};
+    struct shadow_job job = {.tracer = t,
+                             .view = view,
+                             .frame = ray_frame_make(view),
+                             .light = light_frame_make(t->scene, light),
+                             .ids = ids,
+                             .visibility = visibility};
     job.offsets[0] = ray_offsets_pixels(&job.frame);
     job_pool_for(pool, tile_count(view), point_tile, &job);
 }
@@ -205,8 +213,12 @@ static void sample_tile(void *context, size_t index, unsigned worker)
 void tracer_shadow_samples32(const struct tracer *t, const struct view *view, const struct light *light, struct job_pool *pool,
                              uint32_t *receivers, uint32_t *lit)
 {
-    struct shadow_job job = {.tracer = t, .view = view, .frame = ray_frame_make(view), .light = light_frame_make(t->scene, light),
-                             .receivers = receivers, .lit = lit};
+    struct shadow_job job = {.tracer = t,
+                             .view = view,
+                             .frame = ray_frame_make(view),
+                             .light = light_frame_make(t->scene, light),
+                             .receivers = receivers,
+                             .lit = lit};
     job.offsets[0] = ray_offsets_make(&job.frame, view_samples32);
     job.offsets[1] = ray_offsets_make(&job.frame, view_samples32 + LANES);
     job_pool_for(pool, tile_count(view), sample_tile, &job);

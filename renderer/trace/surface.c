@@ -50,8 +50,8 @@ INLINE uint32_t mixed_color(const struct surface *s, const uint32_t corner[3], c
 
 /* Sixteen hits, a member at a time, so that compilers see vectors. */
 struct lanes {
-    float normal[3][LANES];      /* shading; not unit */
-    float geometric[3][LANES];   /* not unit; turned to the eye */
+    float normal[3][LANES];    /* shading; not unit */
+    float geometric[3][LANES]; /* not unit; turned to the eye */
     uint32_t metallic[LANES], color[LANES];
     float depth[LANES];
 };

@@ -6,12 +6,12 @@
 
 /* An instance's share of it, laid out for the hit loop. */
 struct surface {
-    const float (*normals)[3];   /* of the mesh's first vertex */
-    const float (*colors)[4];    /* NULL: none */
-    const uint32_t *indices;     /* of its first triangle */
-    float cofactor[3][3];        /* takes mesh normals to scene space */
+    const float (*normals)[3]; /* of the mesh's first vertex */
+    const float (*colors)[4];  /* NULL: none */
+    const uint32_t *indices;   /* of its first triangle */
+    float cofactor[3][3];      /* takes mesh normals to scene space */
     float base_color[3], roughness;
-    uint32_t metallic, color;    /* packed (scene/pixel.h); color where there are no vertex colours */
+    uint32_t metallic, color; /* packed (scene/pixel.h); color where there are no vertex colours */
 };
 
 /* One an instance; malloc'd, NULL when memory is out. */

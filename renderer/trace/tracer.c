@@ -116,7 +116,8 @@ struct tracer *tracer_create(const struct scene *scene, unsigned threads, struct
             return t;
     }
     tracer_destroy(t);
-    error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for the ray tracer's tree of %zu triangles", scene->drawn_triangle_count);
+    error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for the ray tracer's tree of %zu triangles",
+              scene->drawn_triangle_count);
     return NULL;
 }
 

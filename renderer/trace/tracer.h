@@ -27,8 +27,8 @@ void tracer_camera(const struct tracer *t, const struct view *view, struct job_p
 /* A light's depth map, traced: the nearest depth along view.forward at each texel centre over `casters` only (ascending instance
  * indices; NULL: all), INFINITY where there is none; every triangle counts, whichever side it shows; holes are holes.
  * ids may be NULL. */
-void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count, struct job_pool *pool,
-                  float *depths, uint32_t *ids);
+void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count,
+                  struct job_pool *pool, float *depths, uint32_t *ids);
 
 /* The speed baseline. Ids as tracer_camera() wrote them; visibility: 1 lit, 0 shadowed or no receiver. */
 void tracer_shadow_point(const struct tracer *t, const struct view *view, const struct light *light, const uint32_t *ids,

@@ -21,7 +21,7 @@ struct tracer {
     float (*vertices)[3];    /* every instance's own, scene space */
     size_t *first_vertex;    /* of each instance */
     size_t vertex_count;
-    uint8_t *front;          /* of each instance: enum front */
+    uint8_t *front;           /* of each instance: enum front */
     struct surface *surfaces; /* of each instance */
     struct caster_cache *casters;
     atomic_size_t embree_bytes;

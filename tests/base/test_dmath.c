@@ -86,12 +86,8 @@ static void boxes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors),
-        cmocka_unit_test(normalize_keeps_zero),
-        cmocka_unit_test(finite_sees_each_part),
-        cmocka_unit_test(maps),
-        cmocka_unit_test(products_apply_right_to_left),
-        cmocka_unit_test(boxes),
+        cmocka_unit_test(vectors), cmocka_unit_test(normalize_keeps_zero),         cmocka_unit_test(finite_sees_each_part),
+        cmocka_unit_test(maps),    cmocka_unit_test(products_apply_right_to_left), cmocka_unit_test(boxes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -166,12 +166,9 @@ static void pools_come_and_go(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_index_once),
-        cmocka_unit_test(pool_of_one_stays_on_the_caller),
-        cmocka_unit_test(work_is_shared),
-        cmocka_unit_test(results_are_visible),
-        cmocka_unit_test(several_callers_at_once),
-        cmocka_unit_test(pools_come_and_go),
+        cmocka_unit_test(every_index_once),        cmocka_unit_test(pool_of_one_stays_on_the_caller),
+        cmocka_unit_test(work_is_shared),          cmocka_unit_test(results_are_visible),
+        cmocka_unit_test(several_callers_at_once), cmocka_unit_test(pools_come_and_go),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,7 +93,7 @@ static void long_lines_are_cut(void **state)
 }
 
 #define THREADS 4
-#define LINES 500
+#define LINES   500
 
 static void *write_lines(void *argument)
 {

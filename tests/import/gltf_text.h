@@ -14,7 +14,8 @@ static inline void base64(const uint8_t *data, size_t size, char *out)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t i = 0; i < size; i += 3) {
-        uint32_t bits = (uint32_t)data[i] << 16 | (i + 1 < size ? (uint32_t)data[i + 1] << 8 : 0) | (i + 2 < size ? data[i + 2] : 0);
+        uint32_t bits =
+            (uint32_t)data[i] << 16 | (i + 1 < size ? (uint32_t)data[i + 1] << 8 : 0) | (i + 2 < size ? data[i + 2] : 0);
         for (int k = 0; k < 4; k++)
             *out++ = i + (size_t)k <= size ? digits[bits >> (18 - 6 * k) & 63] : '=';
     }
@@ -29,8 +30,8 @@ static inline char *gltf_text(const char *members, const void *data, size_t size
     if (!text || !code)
         abort();
     base64(data, size, code);
-    snprintf(text, room, "{\"asset\":{\"version\":\"2.0\"},%s,\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:;base64,%s\"}]}", members, size,
-             code);
+    snprintf(text, room, "{\"asset\":{\"version\":\"2.0\"},%s,\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:;base64,%s\"}]}",
+             members, size, code);
     free(code);
     return text;
 }

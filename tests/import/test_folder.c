@@ -69,11 +69,12 @@ static const char *load_with(const char *uri)
 {
     static struct error err;
     char text[800], path[200];
-    snprintf(text, sizeof text,
-             "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
-             "\"type\":\"VEC3\"}],\"buffers\":[{\"byteLength\":36,\"uri\":\"%s\"}]}",
-             uri);
+    snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+        "\"type\":\"VEC3\"}],\"buffers\":[{\"byteLength\":36,\"uri\":\"%s\"}]}",
+        uri);
     write_file(scene_folder, "scene.gltf", text, strlen(text));
     snprintf(path, sizeof path, "%s/scene.gltf", scene_folder);
     struct import_report report = {0};
@@ -88,8 +89,8 @@ static const char *load_with(const char *uri)
 static void own_files_load(void **state)
 {
     (void)state;
-    const char *const uris[] = {"own.bin", "./own.bin", "deeper/own.bin", "deeper//own.bin", "own%2ebin", "with%20space.bin", "with space.bin",
-                                "inside.bin"};
+    const char *const uris[] = {"own.bin",   "./own.bin",        "deeper/own.bin", "deeper//own.bin",
+                                "own%2ebin", "with%20space.bin", "with space.bin", "inside.bin"};
     for (size_t i = 0; i < sizeof uris / sizeof *uris; i++) {
         const char *message = load_with(uris[i]);
         if (message)
@@ -100,10 +101,25 @@ static void own_files_load(void **state)
 static void others_do_not(void **state)
 {
     (void)state;
-    const char *const uris[] = {"../secret.bin",     "deeper/../../secret.bin", "%2e%2e/secret.bin", "..%2fsecret.bin", "/etc/passwd",
-                                "%2fetc%2fpasswd",   "outside.bin",             "up/secret.bin",     "slash/etc/passwd", "pipe.bin",
-                                "deeper",            "",                        ".",                 "own.bin%00.txt",  "file:own.bin",
-                                "http://a.b/own.bin", "own.bin/x",              "nothing.bin",       "deeper/../own.bin"};
+    const char *const uris[] = {"../secret.bin",
+                                "deeper/../../secret.bin",
+                                "%2e%2e/secret.bin",
+                                "..%2fsecret.bin",
+                                "/etc/passwd",
+                                "%2fetc%2fpasswd",
+                                "outside.bin",
+                                "up/secret.bin",
+                                "slash/etc/passwd",
+                                "pipe.bin",
+                                "deeper",
+                                "",
+                                ".",
+                                "own.bin%00.txt",
+                                "file:own.bin",
+                                "http://a.b/own.bin",
+                                "own.bin/x",
+                                "nothing.bin",
+                                "deeper/../own.bin"};
     for (size_t i = 0; i < sizeof uris / sizeof *uris; i++)
         if (!load_with(uris[i]))
             fail_msg("\"%s\" was read", uris[i]);

@@ -25,10 +25,12 @@ static void assert_point(struct dvec3 p, double x, double y, double z)
 static struct scene *square_with(const char *primitive)
 {
     char members[512];
-    snprintf(members, sizeof members,
-             ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}%s}]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48}],"
-                      "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}]",
-             primitive);
+    snprintf(
+        members, sizeof members,
+        ONE_NODE
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}%s}]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}]",
+        primitive);
     return gltf_make(members, square, sizeof square);
 }
 
@@ -74,10 +76,11 @@ static void index_types(void **state)
         for (int i = 0; i < 3; i++)
             memcpy(data + 48 + i * sizes[t], &indices[i], (size_t)sizes[t]); /* little-endian */
         char members[700];
-        const char *form = ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0},\"indices\":1}]}],"
-                                    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":%d}],"
-                                    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"
-                                    "{\"bufferView\":1,\"componentType\":%d,\"count\":3,\"type\":\"SCALAR\"}]";
+        const char *form =
+            ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0},\"indices\":1}]}],"
+                     "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":%d}],"
+                     "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"
+                     "{\"bufferView\":1,\"componentType\":%d,\"count\":3,\"type\":\"SCALAR\"}]";
         snprintf(members, sizeof members, form, 3 * sizes[t], types[t]);
         struct scene *scene = gltf_make(members, data, sizeof data);
         assert_int_equal(scene->vertex_count, 4);
@@ -96,7 +99,8 @@ static void interleaved(void **state)
     struct {
         float position[3], normal[3];
         uint8_t color[4];
-    } vertices[3] = {{{0, 0, 0}, {0, 0, 2}, {255, 0, 0, 255}}, {{1, 0, 0}, {0, 0, 1}, {0, 51, 0, 0}}, {{0, 1, 0}, {0, 0, 0}, {0, 0, 0, 1}}};
+    } vertices[3] = {
+        {{0, 0, 0}, {0, 0, 2}, {255, 0, 0, 255}}, {{1, 0, 0}, {0, 0, 1}, {0, 51, 0, 0}}, {{0, 1, 0}, {0, 0, 0}, {0, 0, 0, 1}}};
     struct scene *scene = gltf_make(
         ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"COLOR_0\":2}}]}],"
                  "\"bufferViews\":[{\"buffer\":0,\"byteLength\":84,\"byteStride\":28}],"
@@ -117,20 +121,21 @@ static void float_colors_of_three(void **state)
 {
     (void)state;
     float data[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5f, 2, 0}, {0, 0, 0}, {1, 1, 1}};
-    struct scene *scene = gltf_make(ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}]}],"
-                                             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":72}],"
-                                             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
-                                             "{\"bufferView\":0,\"byteOffset\":36,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]",
-                                    data, sizeof data);
+    struct scene *scene =
+        gltf_make(ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}]}],"
+                           "\"bufferViews\":[{\"buffer\":0,\"byteLength\":72}],"
+                           "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+                           "{\"bufferView\":0,\"byteOffset\":36,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]",
+                  data, sizeof data);
     assert_true(scene->colors[0][0] == 0.5f && scene->colors[0][1] == 1 && scene->colors[0][3] == 1);
     scene_destroy(scene);
 }
 
-#define SPARSE_FORM                                                                                                        \
-    ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"                                          \
-             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":4},"        \
-             "{\"buffer\":0,\"byteOffset\":40,\"byteLength\":24}],"                                                        \
-             "\"accessors\":[{%s\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"             \
+#define SPARSE_FORM                                                                                                 \
+    ONE_NODE "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"                                   \
+             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":4}," \
+             "{\"buffer\":0,\"byteOffset\":40,\"byteLength\":24}],"                                                 \
+             "\"accessors\":[{%s\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"      \
              "\"indices\":{\"bufferView\":1,\"componentType\":5123},\"values\":{\"bufferView\":2}}}]"
 
 static void sparse(void **state)
@@ -211,7 +216,8 @@ static void unfolding_is_bounded(void **state)
         used += (size_t)snprintf(members + used, room - used, "%s{\"attributes\":{\"POSITION\":%d}}", i ? "," : "", i);
     used += (size_t)snprintf(members + used, room - used, "]}],\"accessors\":[");
     for (int i = 0; i < 200; i++)
-        used += (size_t)snprintf(members + used, room - used, "%s{\"componentType\":5126,\"count\":1048576,\"type\":\"VEC3\"}", i ? "," : "");
+        used += (size_t)snprintf(members + used, room - used, "%s{\"componentType\":5126,\"count\":1048576,\"type\":\"VEC3\"}",
+                                 i ? "," : "");
     used += (size_t)snprintf(members + used, room - used, "]");
     gltf_refused(members, square, sizeof square, "cannot justify");
     free(members);

@@ -202,9 +202,12 @@ static void written_whole_or_not_at_all(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(png_keeps_every_bit),      cmocka_unit_test(jpeg_and_webp_come_near),
-        cmocka_unit_test(quality_counts),           cmocka_unit_test(metadata_are_kept),
-        cmocka_unit_test(absurd_sizes_are_refused), cmocka_unit_test(names_give_formats),
+        cmocka_unit_test(png_keeps_every_bit),
+        cmocka_unit_test(jpeg_and_webp_come_near),
+        cmocka_unit_test(quality_counts),
+        cmocka_unit_test(metadata_are_kept),
+        cmocka_unit_test(absurd_sizes_are_refused),
+        cmocka_unit_test(names_give_formats),
         cmocka_unit_test(written_whole_or_not_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

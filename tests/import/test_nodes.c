@@ -11,8 +11,8 @@
 
 static const float triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-#define MESH                                                                                                      \
-    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"bufferViews\":[{\"buffer\":0,"           \
+#define MESH                                                                                            \
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"bufferViews\":[{\"buffer\":0," \
     "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]"
 
 static struct scene *make(const char *members) { return gltf_make(members, triangle, sizeof triangle); }
@@ -36,7 +36,8 @@ static void transforms_multiply_in_double(void **state)
     assert_true(near(world(scene, 0, 0), 10000000.25 - 18, 10, 28));
     assert_true(near(world(scene, 0, 1), 10000000.25 - 18, 12, 28));
     scene_destroy(scene);
-    gltf_refused("\"nodes\":[{\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,5,6,7,1],\"mesh\":0}]," MESH, triangle, sizeof triangle, "last row");
+    gltf_refused("\"nodes\":[{\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,5,6,7,1],\"mesh\":0}]," MESH, triangle, sizeof triangle,
+                 "last row");
     gltf_refused("\"nodes\":[{\"rotation\":[0,0,0,0]}]," MESH, triangle, sizeof triangle, "quaternion");
     gltf_refused("\"nodes\":[{\"scale\":[1e300,1,1],\"children\":[1]},{\"scale\":[1e300,1,1]}]," MESH, triangle, sizeof triangle,
                  "overflows");
@@ -45,7 +46,8 @@ static void transforms_multiply_in_double(void **state)
 static void only_the_default_scene(void **state)
 {
     (void)state;
-    const char *form = "%s\"scenes\":[{\"nodes\":[0]},{\"nodes\":[1,2]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}]," MESH;
+    const char *form =
+        "%s\"scenes\":[{\"nodes\":[0]},{\"nodes\":[1,2]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}]," MESH;
     char members[600];
     snprintf(members, sizeof members, form, "\"scene\":1,");
     struct scene *second = make(members);
@@ -74,7 +76,8 @@ static void cameras(void **state)
     scene_destroy(scene);
     gltf_refused("\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":1,\"zfar\":1}}]," MESH, triangle,
                  sizeof triangle, "greater than znear");
-    gltf_refused("\"cameras\":[{\"type\":\"fisheye\"}]," MESH, triangle, sizeof triangle, "Must be \"perspective\" or \"orthographic\"");
+    gltf_refused("\"cameras\":[{\"type\":\"fisheye\"}]," MESH, triangle, sizeof triangle,
+                 "Must be \"perspective\" or \"orthographic\"");
 }
 
 static void lights(void **state)
@@ -137,7 +140,8 @@ static void materials(void **state)
     assert_true(m->base_color[3] == 0.75f && m->emissive[0] == 4 && m->emissive[2] == 2 && m->roughness == 1);
     const struct texture_use *use = &m->base_color_texture;
     assert_true(use->texture == 0 && use->texcoord == 0);
-    assert_true(fabsf(use->transform[0][1] - 3) < 1e-6f && fabsf(use->transform[1][0] + 2) < 1e-6f && use->transform[0][2] == 0.5f);
+    assert_true(fabsf(use->transform[0][1] - 3) < 1e-6f && fabsf(use->transform[1][0] + 2) < 1e-6f &&
+                use->transform[0][2] == 0.5f);
     assert_true(scene->textures[0].wrap_s == WRAP_CLAMP_TO_EDGE && scene->textures[0].wrap_t == WRAP_MIRRORED_REPEAT);
     assert_true(scene->textures[0].nearest && scene->images[0].width == 2 && scene->images[0].height == 1);
     assert_true(scene->materials[1].alpha_cutoff == 0.5f && scene->materials[1].alpha_mode == ALPHA_BLEND);

@@ -31,12 +31,12 @@ static const struct {
     const char *file;
     size_t stored, drawn;
 } counted[] = {
-    {"TeapotsGalore/TeapotsGalore.gltf", 4034, 7656770},  {"dragon/dragon-ground.gltf", 871416, 871416},
-    {"ball-lattice-ground.glb", 46082, 46082},            {"butterfly-ground.glb", 6522, 6522},
-    {"grove-oak-30-ground.glb", 54248, 1627382},          {"khronos/GlassVaseFlowers.glb", 10218, 14036},
-    {"khronos/NegativeScaleTest.glb", 3884, 7724},        {"khronos/ReciprocatingSaw.glb", 139594, 198470},
-    {"khronos/RecursiveSkeletons.glb", 76, 6384},         {"khronos/SimpleInstancing.glb", 12, 1500},
-    {"tree-oak-geoleaf-ground.glb", 54248, 54248},        {"tree-oak-ground.glb", 22568, 22568},
+    {"TeapotsGalore/TeapotsGalore.gltf", 4034, 7656770}, {"dragon/dragon-ground.gltf", 871416, 871416},
+    {"ball-lattice-ground.glb", 46082, 46082},           {"butterfly-ground.glb", 6522, 6522},
+    {"grove-oak-30-ground.glb", 54248, 1627382},         {"khronos/GlassVaseFlowers.glb", 10218, 14036},
+    {"khronos/NegativeScaleTest.glb", 3884, 7724},       {"khronos/ReciprocatingSaw.glb", 139594, 198470},
+    {"khronos/RecursiveSkeletons.glb", 76, 6384},        {"khronos/SimpleInstancing.glb", 12, 1500},
+    {"tree-oak-geoleaf-ground.glb", 54248, 54248},       {"tree-oak-ground.glb", 22568, 22568},
 };
 
 static unsigned loaded;

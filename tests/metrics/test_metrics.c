@@ -18,7 +18,8 @@ struct pictures {
 
 static struct metrics_input input_of(const struct pictures *p)
 {
-    return (struct metrics_input){.width = WIDTH, .height = HEIGHT, .visibility = p->tested, .reference = p->reference, .receiver = p->receiver};
+    return (struct metrics_input){
+        .width = WIDTH, .height = HEIGHT, .visibility = p->tested, .reference = p->reference, .receiver = p->receiver};
 }
 
 static struct metrics measured(const struct pictures *p)
@@ -84,13 +85,13 @@ static void leaks_and_acne_are_two_pixels_inside(void **state)
     struct pictures p = all_lit();
     for (int i = 0; i < N; i++)
         p.tested[i] = p.reference[i] = i % WIDTH < 20 ? 0 : 1;
-    p.tested[10 * WIDTH + 10] = 1;                                   /* leak */
-    p.tested[0] = 0.75f;                                             /* leak in the picture's corner */
-    p.tested[12 * WIDTH + 18] = 1;                                   /* two from the edge: its 5 x 5 sees both */
-    p.tested[14 * WIDTH + 17] = 1;                                   /* three from the edge: leak */
-    p.tested[10 * WIDTH + 30] = 0;                                   /* acne */
-    p.tested[20 * WIDTH + 21] = 0.25f;                               /* at the edge */
-    p.tested[22 * WIDTH + 30] = 0.5f;                                /* off by exactly 0.5: not misclassified */
+    p.tested[10 * WIDTH + 10] = 1;     /* leak */
+    p.tested[0] = 0.75f;               /* leak in the picture's corner */
+    p.tested[12 * WIDTH + 18] = 1;     /* two from the edge: its 5 x 5 sees both */
+    p.tested[14 * WIDTH + 17] = 1;     /* three from the edge: leak */
+    p.tested[10 * WIDTH + 30] = 0;     /* acne */
+    p.tested[20 * WIDTH + 21] = 0.25f; /* at the edge */
+    p.tested[22 * WIDTH + 30] = 0.5f;  /* off by exactly 0.5: not misclassified */
     struct metrics m = measured(&p);
     assert_int_equal(m.misclassified, 6);
     assert_int_equal(m.leaks, 3);

@@ -11,7 +11,8 @@ static double drawn(uint32_t *seed)
 
 static void floor_at(struct scene *scene, float y, float size, uint32_t material)
 {
-    const float p[6][3] = {{-size, y, -size}, {-size, y, size}, {size, y, size}, {-size, y, -size}, {size, y, size}, {size, y, -size}};
+    const float p[6][3] = {{-size, y, -size}, {-size, y, size}, {size, y, size},
+                           {-size, y, -size}, {size, y, size},  {size, y, -size}};
     made_triangles(scene, p, 6, material);
 }
 
@@ -72,14 +73,16 @@ static struct scene *fan(void)
         indices[3 * i + 1] = i + 1;
         indices[3 * i + 2] = (i + 1) % BLADES + 1;
     }
-    made_instance(scene, made_mesh(scene, (const float(*)[3])p, NULL, BLADES + 1, indices, 3 * BLADES, material), affine_identity());
+    made_instance(scene, made_mesh(scene, (const float(*)[3])p, NULL, BLADES + 1, indices, 3 * BLADES, material),
+                  affine_identity());
     wall_behind(scene, material);
     made_finish(scene);
     return scene;
 }
 
 static const float cube[8][3] = {{-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 2, 1}, {-1, 2, 1}};
-static const uint32_t cube_indices[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 3, 6, 2, 3, 7, 6, 0, 4, 7, 0, 7, 3, 1, 2, 6, 1, 6, 5};
+static const uint32_t cube_indices[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                          3, 6, 2, 3, 7, 6, 0, 4, 7, 0, 7, 3, 1, 2, 6, 1, 6, 5};
 
 static struct affine turned(double degrees, double scale, double mirror)
 {
@@ -179,11 +182,12 @@ static struct scene *duplicates(void)
 {
     struct scene *scene = made_scene();
     uint32_t both = made_material(scene, true), one = made_material(scene, false);
-    const float p[12][3] = {{-1, 0, 0}, {1, 0.1f, 0.3f}, {0, 1.2f, 0.1f}, {1, 0.1f, 0.3f}, {-1, 0, 0}, {0, 1.2f, 0.1f},
-                            {-1, 0, 0}, {1, 0.1f, 0.3f}, {0, 1.2f, 0.1f}, {-1, 0, 0}, {0, 1.2f, 0.1f}, {1, 0.1f, 0.3f}};
+    const float p[12][3] = {{-1, 0, 0}, {1, 0.1f, 0.3f}, {0, 1.2f, 0.1f}, {1, 0.1f, 0.3f}, {-1, 0, 0},      {0, 1.2f, 0.1f},
+                            {-1, 0, 0}, {1, 0.1f, 0.3f}, {0, 1.2f, 0.1f}, {-1, 0, 0},      {0, 1.2f, 0.1f}, {1, 0.1f, 0.3f}};
     made_triangles(scene, p, 12, one);
     made_triangles(scene, p, 6, both);
-    const float wide[6][3] = {{-2, -1, 0.5f}, {2, -1, 0.5f}, {0, 0.5f, -0.25f}, {-1, -1, 0.5f}, {1, -1, 0.5f}, {0, -0.25f, 0.125f}};
+    const float wide[6][3] = {{-2, -1, 0.5f}, {2, -1, 0.5f}, {0, 0.5f, -0.25f},
+                              {-1, -1, 0.5f}, {1, -1, 0.5f}, {0, -0.25f, 0.125f}};
     made_triangles(scene, wide, 6, both);
     floor_at(scene, -1, 3, one);
     made_finish(scene);
@@ -194,9 +198,9 @@ static struct scene *broken(void)
 {
     struct scene *scene = made_scene();
     uint32_t material = made_material(scene, true);
-    float p[][3] = {{-1, -0.5f, 0}, {1, -0.5f, 0}, {0, 1, 0}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1}, {0, 0, 1}, {0, 0, 1}, {1, 1, 1},
-                    {NAN, 0, 1}, {0, 1, 1}, {1, 0, 1}, {0, INFINITY, 1}, {0, 1, 1}, {1, 0, 1}, {2e18f, 0, 1}, {0, 1, 1}, {1, 0, 1},
-                    {-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0, 0.5f, 0.5f}};
+    float p[][3] = {{-1, -0.5f, 0}, {1, -0.5f, 0}, {0, 1, 0},   {-1, 0, 1}, {0, 0, 1},        {1, 0, 1},        {0, 0, 1},
+                    {0, 0, 1},      {1, 1, 1},     {NAN, 0, 1}, {0, 1, 1},  {1, 0, 1},        {0, INFINITY, 1}, {0, 1, 1},
+                    {1, 0, 1},      {2e18f, 0, 1}, {0, 1, 1},   {1, 0, 1},  {-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f},  {0, 0.5f, 0.5f}};
     made_triangles(scene, (const float(*)[3])p, sizeof p / sizeof p[0], material);
     floor_at(scene, -1, 3, material);
     made_finish(scene);
@@ -208,8 +212,18 @@ static struct scene *round_the_light(void)
 {
     struct scene *scene = made_scene();
     uint32_t material = made_material(scene, true);
-    const float p[12][3] = {{-1, 1, -1}, {1, 1, -1}, {0, 1, 1}, {0.2f, 0, 0.1f}, {0.2f, 2, 1}, {0.2f, 2, -1},
-                            {-0.3f, 0.999f, -0.3f}, {0.3f, 0.999f, -0.3f}, {0.1f, 0.999f, 0.4f}, {-1, 0.5f, 0.2f}, {0.8f, 1.6f, 0.3f}, {-0.6f, 1.8f, -0.7f}};
+    const float p[12][3] = {{-1, 1, -1},
+                            {1, 1, -1},
+                            {0, 1, 1},
+                            {0.2f, 0, 0.1f},
+                            {0.2f, 2, 1},
+                            {0.2f, 2, -1},
+                            {-0.3f, 0.999f, -0.3f},
+                            {0.3f, 0.999f, -0.3f},
+                            {0.1f, 0.999f, 0.4f},
+                            {-1, 0.5f, 0.2f},
+                            {0.8f, 1.6f, 0.3f},
+                            {-0.6f, 1.8f, -0.7f}};
     made_triangles(scene, p, 12, material);
     floor_at(scene, -1, 3, material);
     made_finish(scene);

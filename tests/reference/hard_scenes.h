@@ -10,7 +10,7 @@ struct hard_scene {
     struct scene *(*make)(void); /* finished */
     struct dvec3 eye, target;    /* of a fitting camera */
     struct dvec3 light;
-    bool grid;                   /* for an orthographic camera whose picture positions fall on the scene's integers */
+    bool grid; /* for an orthographic camera whose picture positions fall on the scene's integers */
 };
 
 extern const struct hard_scene hard_scenes[];

@@ -180,7 +180,8 @@ static bool solid(const struct scene *scene, const struct face *f, struct dvec3 
     const uint32_t *index = scene->indices + mesh->first_index + 3 * f->index;
     if (material->base_color_texture.texture != SCENE_NONE && first != SCENE_NONE)
         for (int i = 0; i < 2; i++)
-            uv[i] = (float)((w0 * (double)scene->texcoords[first + index[0]][i] + w1 * (double)scene->texcoords[first + index[1]][i]) +
+            uv[i] = (float)((w0 * (double)scene->texcoords[first + index[0]][i] +
+                             w1 * (double)scene->texcoords[first + index[1]][i]) +
                             w2 * (double)scene->texcoords[first + index[2]][i]);
     float alpha = 1;
     if (mesh->first_color != SCENE_NONE)
@@ -277,8 +278,9 @@ static bool shadowed(struct rational *r, uint32_t own, struct dvec3 rounded, con
 {
     struct scratch *s = &r->scratch;
     bool far_away = light->kind == LIGHT_DIRECTIONAL;
-    struct dvec3 to = far_away ? dvec3(-light->direction.x, -light->direction.y, -light->direction.z)
-                               : dvec3(light->position.x - rounded.x, light->position.y - rounded.y, light->position.z - rounded.z);
+    struct dvec3 to = far_away
+                          ? dvec3(-light->direction.x, -light->direction.y, -light->direction.z)
+                          : dvec3(light->position.x - rounded.x, light->position.y - rounded.y, light->position.z - rounded.z);
     for (size_t i = 0; i < r->count; i++) {
         const struct face *f = &r->faces[i];
         if (f->id == own)
@@ -291,7 +293,8 @@ static bool shadowed(struct rational *r, uint32_t own, struct dvec3 rounded, con
     return false;
 }
 
-enum rational_answer rational_light(struct rational *r, const struct view *view, const struct light *light, uint32_t id, double x, double y)
+enum rational_answer rational_light(struct rational *r, const struct view *view, const struct light *light, uint32_t id, double x,
+                                    double y)
 {
     const struct face *f = NULL;
     for (size_t i = 0; i < r->count; i++)

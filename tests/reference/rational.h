@@ -16,4 +16,5 @@ uint32_t rational_visible(struct rational *r, const struct view *view, double x,
 enum rational_answer { RATIONAL_NO_RECEIVER, RATIONAL_SHADOWED, RATIONAL_LIT };
 
 /* What reaches the point at which the ray through (x, y) meets the plane of drawn triangle `id` (SCENE_NONE: no receiver). */
-enum rational_answer rational_light(struct rational *r, const struct view *view, const struct light *light, uint32_t id, double x, double y);
+enum rational_answer rational_light(struct rational *r, const struct view *view, const struct light *light, uint32_t id, double x,
+                                    double y);

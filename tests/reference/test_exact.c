@@ -26,7 +26,8 @@ static const struct dvec3 flat[3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
 static void sides_of_a_plane(void **state)
 {
     (void)state;
-    const struct exact_point above = {.kind = EXACT_POINT, .v = {1e9, -7, 0x1p-1000}}, in = {.kind = EXACT_POINT, .v = {1e300, 3, 0}};
+    const struct exact_point above = {.kind = EXACT_POINT, .v = {1e9, -7, 0x1p-1000}},
+                             in = {.kind = EXACT_POINT, .v = {1e300, 3, 0}};
     assert_int_equal(exact_plane_side(&above, flat), 1);
     assert_int_equal(exact_plane_side(&in, flat), 0);
     assert_int_equal(exact_apex_side(&(struct exact_apex){true, {1, 1, -1e-300}}, flat), -1);
@@ -38,7 +39,9 @@ static void sides_of_a_plane(void **state)
 static void a_point_on_a_plane_is_on_it(void **state)
 {
     (void)state;
-    const struct exact_point p = {.kind = EXACT_ON_PLANE, .ray_origin = {0.1, 0.2, 5}, .ray_direction = {0.3, 0.7, -3},
+    const struct exact_point p = {.kind = EXACT_ON_PLANE,
+                                  .ray_origin = {0.1, 0.2, 5},
+                                  .ray_direction = {0.3, 0.7, -3},
                                   .plane = {{0, 0, 0.1}, {4, 0, 0.3}, {0, 4, 0.7}}};
     const struct dvec3 shifted[3] = {{4, 0, 0.3}, {0, 4, 0.7}, {0, 0, 0.1}};
     assert_int_equal(exact_plane_side(&p, p.plane), 0);

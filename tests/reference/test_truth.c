@@ -91,7 +91,8 @@ static void check_point(const struct setting *s)
     tracer_shadow_point(s->tracer, &s->view, &s->light, ids, s->pool, plain);
     job_pool_for(s->pool, s->view.height, point_row, &rows);
     for (size_t i = 0; i < N; i++) {
-        s->totals->wrong_points += visibility[i] != (answers[i] == RATIONAL_LIT) || receiver[i] != (answers[i] != RATIONAL_NO_RECEIVER);
+        s->totals->wrong_points +=
+            visibility[i] != (answers[i] == RATIONAL_LIT) || receiver[i] != (answers[i] != RATIONAL_NO_RECEIVER);
         s->totals->embree_points += plain[i] != (answers[i] == RATIONAL_LIT);
         s->totals->points += answers[i] != RATIONAL_NO_RECEIVER;
     }
@@ -173,9 +174,10 @@ static void the_reference_is_the_truth(void **state)
     for (size_t i = 0; i < hard_scene_count; i++) {
         struct totals t = {0};
         check_scene(&hard_scenes[i], &t);
-        print_message("%-16s receivers %5zu + %5zu samples; reference wrong %zu + %zu; plain Embree wrong %zu + %zu; decided exactly %zu\n",
-                      hard_scenes[i].name, (size_t)t.points, (size_t)t.samples, (size_t)t.wrong_points, (size_t)t.wrong_samples,
-                      (size_t)t.embree_points, (size_t)t.embree_samples, (size_t)t.exact);
+        print_message(
+            "%-16s receivers %5zu + %5zu samples; reference wrong %zu + %zu; plain Embree wrong %zu + %zu; decided exactly %zu\n",
+            hard_scenes[i].name, (size_t)t.points, (size_t)t.samples, (size_t)t.wrong_points, (size_t)t.wrong_samples,
+            (size_t)t.embree_points, (size_t)t.embree_samples, (size_t)t.exact);
         sum.points += t.points;
         sum.samples += t.samples;
         sum.wrong_points += t.wrong_points;

@@ -34,7 +34,8 @@ static void wraps(void **state)
 {
     (void)state;
     const float u[] = {0.1f, 0.3f, 0.99f, 1.1f, 1.3f, 2.05f, -0.1f, -0.3f, -1.1f};
-    const int repeat[] = {0, 1, 3, 0, 1, 0, 3, 2, 3}, mirror[] = {0, 1, 3, 3, 2, 0, 0, 1, 3}, clamp[] = {0, 1, 3, 3, 3, 3, 0, 0, 0};
+    const int repeat[] = {0, 1, 3, 0, 1, 0, 3, 2, 3}, mirror[] = {0, 1, 3, 3, 2, 0, 0, 1, 3},
+              clamp[] = {0, 1, 3, 3, 3, 3, 0, 0, 0};
     const int *const wanted[] = {repeat, mirror, clamp};
     for (int mode = 0; mode < 3; mode++) {
         struct scene *scene = masked((enum wrap_mode)mode);

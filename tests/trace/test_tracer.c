@@ -163,8 +163,9 @@ static void broken_vertices_break_nothing(void **state)
 {
     (void)state;
     struct scene *scene = made_scene();
-    float points[][3] = {{-1, -1, 0}, {1, -1, 0}, {0, NAN, 0}, {-9, -9, -3}, {9, -9, -3}, {0, 9, -3},
-                         {INFINITY, 0, 1}, {0, 1, 1}, {1, 0, 1}, {0, 0, 2}, {0, 0, 2}, {0, 0, 2}, {3e38f, 0, 3}, {0, -3e38f, 3}, {1, 1, 3}};
+    float points[][3] = {{-1, -1, 0}, {1, -1, 0},       {0, NAN, 0},   {-9, -9, -3},   {9, -9, -3},
+                         {0, 9, -3},  {INFINITY, 0, 1}, {0, 1, 1},     {1, 0, 1},      {0, 0, 2},
+                         {0, 0, 2},   {0, 0, 2},        {3e38f, 0, 3}, {0, -3e38f, 3}, {1, 1, 3}};
     made_triangles(scene, (const float(*)[3])points, 15, made_material(scene, true));
     made_finish(scene);
     struct shot *s = shoot(scene, made_camera(dvec3(0, 0, 6), dvec3(0, 0, 0), 0.3));
