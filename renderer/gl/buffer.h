@@ -1,4 +1,4 @@
-/* Buffers, with a view as a texture where shaders read them by texelFetch (on software rasterizers much faster than storage blocks). */
+/* Buffers, with a view as a texture where shaders read them by texelFetch. */
 #pragma once
 
 #include <stdbool.h>
