@@ -66,9 +66,27 @@ struct shadow_input {
     const struct reference *(*reference)(void *owner, struct error *err);
     void *owner;
     bool trace_maps; /* make depth maps by tracing (draw/producer.h) */
+    size_t memory;   /* bytes that a light's structure may take; 0: no limit */
     struct job_pool *pool;
     struct gl_context *gl;
 };
+
+/* A system's triangle lists, read back for measuring: texel t = (map * size + row) * size + column holds the drawn-triangle ids
+ * triangles[first[t]] .. triangles[first[t + 1]], each once. Rows run as the map's texture does: row 0 at the top of the map's view. Both
+ * arrays are malloc'd and become the caller's. */
+struct shadow_lists {
+    unsigned map_count;
+    uint32_t size;
+    uint32_t *first; /* map_count * size * size + 1 */
+    uint32_t *triangles;
+};
+
+/* Something a system tells about itself in the stats and in view.stats: "nodes", "undecided_fraction". */
+struct shadow_figure {
+    const char *name; /* [a-z0-9_]+, static */
+    double value;
+};
+#define SHADOW_FIGURES_MAX 16
 
 enum shadow_flags {
     SHADOW_USES_MAPS = 1,   /* wants shadow_fit; must have a parameter "size" */
@@ -95,6 +113,16 @@ struct shadow_system {
     bool (*resolve)(void *state, const struct shadow_input *in, struct error *err);
     void (*finish)(void *state);        /* optional; accepts half-initialised state */
     size_t (*bytes)(const void *state); /* optional: what the state holds on the GPU and CPU, now */
+
+    /* For systems with lists, with the state prepared: what each texel's list holds. Slow; never in a streamed frame. */
+    bool (*read_lists)(void *state, const struct shadow_input *in, struct shadow_lists *out, struct error *err);
+    /* For systems that decide each of the 32 samples: the masks behind the last resolve, as reference_samples32 defines them, one
+     * entry a pixel. Returns false without an error set where the parameters ask for one sample. Slow. */
+    bool (*read_masks)(void *state, const struct shadow_input *in, uint32_t *receivers, uint32_t *lit, struct error *err);
+    /* Optional: figures of the last frame; returns how many, at most SHADOW_FIGURES_MAX. */
+    size_t (*figures)(const void *state, struct shadow_figure *out);
+    /* View-driven, progressive systems: true once another frame of the same still view would change nothing. NULL: always. */
+    bool (*converged)(const void *state);
 };
 
 /* The registry, in the order of algorithms.def. */
