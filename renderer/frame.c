@@ -69,21 +69,14 @@ static bool traces_maps(const struct render_scene *s, const struct render_settin
 static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
                                      unsigned light)
 {
-    return (struct shadow_input){
-        .scene = s->scene,
-        .light = &settings->lights[light],
-        .light_index = light,
-        .viewer = settings->viewer,
-        .view = &r->gbuffer.view.view,
-        .gbuffer = &r->gbuffer,
-        .draw = &s->draw,
-        .tracer = render_scene_tracer,
-        .reference = render_scene_reference,
-        .owner = s,
-        .trace_maps = traces_maps(s, settings),
-        .pool = r->pool,
-        .gl = &r->gl,
-    };
+    struct shadow_input in = render_scene_input(s);
+    in.light = &settings->lights[light];
+    in.light_index = light;
+    in.viewer = settings->viewer;
+    in.view = &r->gbuffer.view.view;
+    in.trace_maps = traces_maps(s, settings);
+    in.memory = settings->light_count ? settings->memory / settings->light_count : 0;
+    return in;
 }
 
 static bool prepare_lights(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
@@ -150,12 +143,14 @@ static bool run_lighting(struct renderer *r, struct render_scene *s, const struc
 
 static void describe_lights(const struct render_scene *s, const struct render_settings *settings, struct frame_info *info)
 {
+    info->converged = true;
     for (size_t i = 0; i < settings->light_count; i++) {
         bool shared = false; /* equal lights share a state */
         for (size_t k = 0; k < i; k++)
             shared |= s->current[k] == s->current[i];
         info->shadow_bytes += shared ? 0 : light_state_bytes(s->current[i]);
         info->map_count_total += s->current[i]->fit.map_count;
+        info->converged &= light_state_converged(s->current[i]);
     }
     if (settings->light_count == 0)
         return;
@@ -163,6 +158,7 @@ static void describe_lights(const struct render_scene *s, const struct render_se
     info->map_count = fit->map_count;
     info->map_size = fit->map_count ? fit->maps[0].width : 0;
     memcpy(info->map_fov_deg, fit->fov_deg, sizeof info->map_fov_deg);
+    info->figure_count = renderer_read_figures(s, 0, info->figures);
 }
 
 bool frame_render(struct renderer *r, struct render_scene *s, const struct render_settings *settings, struct frame_info *info,

@@ -49,3 +49,18 @@ const struct reference *render_scene_reference(void *owner, struct error *err)
         s->reference = reference_create(s->scene, s->renderer->threads, err);
     return s->reference;
 }
+
+struct shadow_input render_scene_input(struct render_scene *s)
+{
+    struct renderer *r = s->renderer;
+    return (struct shadow_input){
+        .scene = s->scene,
+        .gbuffer = &r->gbuffer,
+        .draw = &s->draw,
+        .tracer = render_scene_tracer,
+        .reference = render_scene_reference,
+        .owner = s,
+        .pool = r->pool,
+        .gl = &r->gl,
+    };
+}

@@ -17,6 +17,9 @@ struct render_scene {
     struct light_state *current[RENDERER_LIGHTS_MAX]; /* the last frame's, one a light */
 };
 
+/* What the inputs of all lights share. */
+struct shadow_input render_scene_input(struct render_scene *s);
+
 /* For struct shadow_input; `owner` is the render_scene. */
 const struct tracer *render_scene_tracer(void *owner, struct error *err);
 const struct reference *render_scene_reference(void *owner, struct error *err);

@@ -182,26 +182,6 @@ bool renderer_oldest(const struct renderer *r, uint32_t *width, uint32_t *height
     return true;
 }
 
-bool renderer_read_visibility(struct renderer *r, unsigned light, float *out)
-{
-    struct error err = {0};
-    const struct gl_texture *t = &r->visibility;
-    if (light >= t->layers)
-        return false;
-    glGetTextureSubImage(t->id, 0, 0, 0, (GLint)light, (GLsizei)t->width, (GLsizei)t->height, 1, GL_RED, GL_FLOAT,
-                         (GLsizei)((size_t)t->width * t->height * sizeof *out), out);
-    return gl_check(&r->gl, &err);
-}
-
-bool renderer_read_ids(struct renderer *r, uint32_t *out)
-{
-    struct error err = {0};
-    const uint32_t *ids = gbuffer_read_ids(&r->gbuffer, &r->gl, &err);
-    if (ids)
-        memcpy(out, ids, (size_t)r->gbuffer.ids.width * r->gbuffer.ids.height * sizeof *out);
-    return ids != NULL;
-}
-
 struct light light_turned(const struct scene *scene, const struct light *light, double degrees)
 {
     struct light turned = *light;

@@ -68,6 +68,7 @@ struct render_settings {
     enum camera_pass map_pass; /* the same choice for depth maps from lights */
     enum pixel_format format;
     uint32_t viewer;       /* whose picture: a light that moves takes along what was built for it, but only from its own viewer */
+    size_t memory;         /* bytes that the lights' structures may take together; 0: no limit */
     bool finish_each_pass; /* waits after each pass so that pass times are true on any device */
 };
 
@@ -89,6 +90,9 @@ struct frame_info {
     uint32_t map_size;
     double map_fov_deg[SHADOW_MAPS_MAX];
     size_t map_count_total; /* over all lights */
+    bool converged;         /* another frame of the same still view would change nothing */
+    size_t figure_count;    /* of the first light's system, 0 if it tells none */
+    struct shadow_figure figures[SHADOW_FIGURES_MAX];
 };
 
 /* Starts a frame; does not wait for the GPU. At most RENDERER_IN_FLIGHT may be uncollected (ERROR_TRY_AGAIN past that).
@@ -107,6 +111,15 @@ bool renderer_oldest(const struct renderer *r, uint32_t *width, uint32_t *height
  * (SCENE_NONE: background) that the camera pass wrote. `out`: width * height. */
 bool renderer_read_visibility(struct renderer *r, unsigned light, float *out);
 bool renderer_read_ids(struct renderer *r, uint32_t *out);
+
+/* What the system tells of that frame beyond visibility (shadow/shadow.h); `s` is the frame's scene. False with err untouched where it
+ * has no such thing to tell. */
+size_t renderer_read_figures(const struct render_scene *s, unsigned light, struct shadow_figure out[SHADOW_FIGURES_MAX]);
+/* The masks behind the visibility: width * height each. */
+bool renderer_read_masks(struct render_scene *s, unsigned light, uint32_t *receivers, uint32_t *lit, struct error *err);
+/* The lists of triangles; both arrays become the caller's. *fit: what the maps see; its casters stand until the next frame. */
+bool renderer_read_lists(struct render_scene *s, unsigned light, struct shadow_lists *out, struct shadow_fit *fit,
+                         struct error *err);
 
 /* Light `index` turned by `degrees` about the vertical axis through the scene's centre: --moving. */
 struct light light_turned(const struct scene *scene, const struct light *light, double degrees);

@@ -186,8 +186,19 @@ static bool set_device(void *target, const char *value, struct error *err)
 {
     struct common_options *o = target;
     if (!*value)
-        return error_set(err, ERROR_USAGE, "device", "an index of gnomon list devices, a DRM node path, cuda:N or software is accepted");
+        return error_set(err, ERROR_USAGE, "device",
+                         "an index of gnomon list devices, a DRM node path, cuda:N or software is accepted");
     o->device = value;
+    return true;
+}
+
+static bool set_memory(void *target, const char *value, struct error *err)
+{
+    struct common_options *o = target;
+    unsigned long n;
+    if (!number_parse_unsigned(value, 1, MEMORY_MAX_MIB, &n))
+        return error_set(err, ERROR_USAGE, "memory", "1 to %d MiB are accepted", MEMORY_MAX_MIB);
+    o->memory = (size_t)n << 20;
     return true;
 }
 
@@ -243,8 +254,9 @@ const struct option common_option_table[] = {
      set_frames_timed},
     {"moving", NULL, "turn the lights by 0.25 degrees for each timed frame", set_moving},
     {"threads", "N", "bounds all work (default SLURM_CPUS_PER_TASK, else the cores allowed)", set_threads},
-    {"device", "INDEX|NODE|software", "gnomon list devices prints them; cuda:N is taken too (default: the first that works)", set_device},
-    {"memory", "MIB", "budget for GPU memory", NULL},
+    {"device", "INDEX|NODE|software", "gnomon list devices prints them; cuda:N is taken too (default: the first that works)",
+     set_device},
+    {"memory", "MIB", "what the lights' shadow structures may take together, 1 to 1048576 (default: no limit)", set_memory},
     {"shader-dir", "DIR", "read the shaders from DIR, again whenever they change", set_shader_dir},
     {"quiet", NULL, "no progress bar", set_quiet},
     {"log-level", "LEVEL", "error, warning, info or debug, on standard error (default warning)", set_log_level},
@@ -321,6 +333,7 @@ bool common_options_settings(const struct common_options *o, const struct scene 
     out->tonemap = o->tonemap;
     out->aa = o->aa;
     out->camera_pass = o->camera_pass;
+    out->memory = o->memory;
     return true;
 }
 

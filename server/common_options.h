@@ -29,12 +29,13 @@ struct common_options {
     unsigned frames_timed; /* 0: not given */
     bool moving;
     unsigned threads;       /* >= 1 */
+    size_t memory;          /* bytes; 0: no limit */
     const char *device;     /* NULL: first that works */
     const char *shader_dir; /* NULL: the built-in ones */
     bool quiet;
 };
 
-enum { THREADS_MAX = 256, FRAMES_TIMED_MAX = 100000 };
+enum { THREADS_MAX = 256, FRAMES_TIMED_MAX = 100000, MEMORY_MAX_MIB = 1 << 20 };
 
 extern const struct option common_option_table[];
 

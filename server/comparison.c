@@ -16,6 +16,8 @@ void comparison_finish(struct comparison *c)
         free(c->tested[i]);
         free(c->truth[i]);
         free(c->receiver[i]);
+        free(c->masks[i].receivers);
+        free(c->masks[i].lit);
     }
     free(c->ids);
     free(c->one_triangle);
@@ -32,6 +34,7 @@ static bool comparison_init(struct comparison *c, const struct render_settings *
     c->picture = calloc(pixels, 4);
     bool good = c->ids && c->one_triangle && c->picture;
     for (size_t i = 0; i < c->light_count; i++) {
+        c->wrong_samples[i] = -1;
         c->tested[i] = calloc(pixels, sizeof(float));
         c->truth[i] = calloc(pixels, sizeof(float));
         c->receiver[i] = calloc(pixels, 1);
@@ -64,15 +67,46 @@ static bool read_visibility(struct stage *stage, const struct render_settings *s
     return true;
 }
 
-static bool render_tested(struct stage *stage, struct comparison *c, struct error *err)
+/* Masks are a second copy of the picture and more: they are read only where truth has some to hold against them. */
+static bool read_masks(struct stage *stage, unsigned light, struct comparison *c, struct error *err)
+{
+    struct sample_masks *m = &c->masks[light];
+    size_t pixels = (size_t)c->width * c->height;
+    if (!stage->settings.system->read_masks)
+        return true;
+    m->receivers = malloc(pixels * sizeof *m->receivers);
+    m->lit = malloc(pixels * sizeof *m->lit);
+    if (!m->receivers || !m->lit)
+        return error_set(err, ERROR_TRY_AGAIN, "size", "memory is out for the masks of %zu pixels", pixels);
+    if (renderer_read_masks(stage->uploaded, light, m->receivers, m->lit, err))
+        return true;
+    free(m->receivers);
+    free(m->lit);
+    *m = (struct sample_masks){0};
+    return err->code == ERROR_NONE;
+}
+
+static bool read_what_it_tells(struct stage *stage, const struct against *against, struct comparison *c, struct error *err)
+{
+    for (unsigned i = 0; i < c->light_count; i++) {
+        c->figure_count[i] = renderer_read_figures(stage->uploaded, i, c->figures[i]);
+        if (against->kind == AGAINST_SAMPLES32 && !read_masks(stage, i, c, err))
+            return false;
+    }
+    return true;
+}
+
+static bool render_tested(struct stage *stage, const struct against *against, struct comparison *c, struct error *err)
 {
     struct render_settings settings = stage->settings;
     struct frame_info info;
     settings.aa = 1;
     settings.format = PIXELS_RGBA8;
     settings.show = SHOW_SHADED;
-    if (!stage_frame(stage, &settings, c->picture, &info, err) || !read_visibility(stage, &settings, c->tested, err))
+    if (!stage_converge(stage, &settings, c->picture, &info, &c->converge_frames, err) ||
+        !read_visibility(stage, &settings, c->tested, err) || !read_what_it_tells(stage, against, c, err))
         return false;
+    c->converged = info.converged;
     if (!renderer_read_ids(stage->renderer, c->ids))
         return error_set(err, ERROR_TRY_AGAIN, NULL, "the triangle ids could not be read back from the device");
     return true;
@@ -88,7 +122,8 @@ static bool render_truth(struct stage *stage, const struct against *against, str
     settings.system = against->system;
     settings.params = against->params;
     void *pixels = stage_picture(&settings, err);
-    bool good = pixels && stage_frame(stage, &settings, pixels, &info, err) && read_visibility(stage, &settings, c->truth, err);
+    bool good =
+        pixels && stage_converge(stage, &settings, pixels, &info, NULL, err) && read_visibility(stage, &settings, c->truth, err);
     free(pixels);
     return good;
 }
@@ -133,6 +168,8 @@ static bool trace_samples32(const struct reference *reference, const struct stag
         c->receiver[light][p] = facing > 0;
         c->truth[light][p] = facing ? (float)__builtin_popcount(lit[p]) / (float)facing : 0;
     }
+    if (good && c->masks[light].receivers)
+        c->wrong_samples[light] = metrics_wrong_samples(&c->masks[light], &(struct sample_masks){receivers, lit}, pixels);
     free(receivers);
     free(lit);
     return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference was stopped early");
@@ -204,6 +241,7 @@ static bool measure(struct comparison *c, struct error *err)
             .reference = c->truth[i],
             .receiver = c->receiver[i],
             .one_triangle = c->one_triangle,
+            .wrong_samples = c->wrong_samples[i],
         };
         good = metrics_pool_add(&pool, &input, &c->light[i]);
     }
@@ -214,7 +252,7 @@ static bool measure(struct comparison *c, struct error *err)
 
 bool comparison_render(struct stage *stage, const struct against *against, struct comparison *out, struct error *err)
 {
-    return comparison_init(out, &stage->settings, err) && render_tested(stage, out, err) &&
+    return comparison_init(out, &stage->settings, err) && render_tested(stage, against, out, err) &&
            (against->kind != AGAINST_SYSTEM || render_truth(stage, against, out, err));
 }
 

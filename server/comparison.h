@@ -19,8 +19,14 @@ struct comparison {
     uint32_t *ids;                      /* drawn triangles, as the camera pass wrote them */
     float *tested[RENDERER_LIGHTS_MAX]; /* visibility, [0,1] */
     float *truth[RENDERER_LIGHTS_MAX];
-    uint8_t *receiver[RENDERER_LIGHTS_MAX]; /* 1 where the pixel counts */
-    uint8_t *one_triangle;                  /* 1 where all 32 samples see the same triangle */
+    uint8_t *receiver[RENDERER_LIGHTS_MAX];         /* 1 where the pixel counts */
+    uint8_t *one_triangle;                          /* 1 where all 32 samples see the same triangle */
+    struct sample_masks masks[RENDERER_LIGHTS_MAX]; /* tested, where the system decides each sample; else NULL */
+    int64_t wrong_samples[RENDERER_LIGHTS_MAX];     /* against samples32, of systems with masks; else -1 */
+    struct shadow_figure figures[RENDERER_LIGHTS_MAX][SHADOW_FIGURES_MAX]; /* what the system tells of itself */
+    size_t figure_count[RENDERER_LIGHTS_MAX];
+    unsigned converge_frames; /* how many the tested picture took ... */
+    bool converged;           /* ... and whether that was enough */
     struct metrics light[RENDERER_LIGHTS_MAX];
     struct metrics total;
     struct reference_counts counts; /* of the reference, over all lights */

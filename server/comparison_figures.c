@@ -10,6 +10,9 @@ static json_t *light_rows(const struct stage *stage, const struct comparison *c)
     for (size_t i = 0; i < c->light_count; i++) {
         const struct light *light = &stage->settings.lights[i];
         json_t *row = figures_errors(&c->light[i]);
+        json_t *told = figures_told(c->figures[i], c->figure_count[i]);
+        if (told)
+            json_object_set_new(row, "figures", told);
         json_object_set_new(row, "light", json_integer((json_int_t)i));
         json_object_set_new(row, "name", json_text(light->name));
         json_object_set_new(row, "kind", json_string(light_kind_names[light->kind]));
@@ -28,6 +31,9 @@ void figures_add_comparison(json_t *figures, const struct against *a, const stru
     json_decref(errors);
     for (size_t i = 0; i < sizeof of_lists / sizeof of_lists[0]; i++)
         json_object_set_new(figures, of_lists[i], json_null());
+    if (stage->settings.system->converged)
+        json_object_set_new(figures, "convergence",
+                            json_pack("{s:I, s:b}", "frames", (json_int_t)c->converge_frames, "converged", c->converged));
     json_object_set_new(figures, "against", json_string(against));
     json_object_set_new(figures, "reference",
                         json_pack("{s:I, s:I, s:I, s:f}", "rays", (json_int_t)c->counts.rays, "tests",

@@ -57,12 +57,24 @@ static json_int_t peak_bytes(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (json_int_t)usage.ru_maxrss * 1024 : 0;
 }
 
+json_t *figures_told(const struct shadow_figure *figures, size_t count)
+{
+    json_t *object = count ? json_object() : NULL;
+    for (size_t i = 0; object && i < count; i++)
+        json_object_set_new(object, figures[i].name, json_number(figures[i].value));
+    return object;
+}
+
 json_t *figures_render(const struct scene *scene, const struct render_settings *settings, const struct device_info *device,
                        const struct measurement *m)
 {
     double visibility = m->pass_ms[PASS_RECEIVERS] + m->pass_ms[PASS_PREPARE] + m->pass_ms[PASS_RESOLVE];
+    json_t *convergence = m->converge_frames
+                              ? json_pack("{s:I, s:b}", "frames", (json_int_t)m->converge_frames, "converged", m->last.converged)
+                              : NULL;
     return json_pack(
-        "{s:s, s:o, s:{s:I, s:I, s:I, s:I}, s:s, s:o, s:o, s:[I, I], s:I, s:b, s:{s:o, s:o, s:o}, s:o, s:o, s:{s:I, s:I, s:I}}",
+        "{s:s, s:o, s:{s:I, s:I, s:I, s:I}, s:s, s:o, s:o, s:[I, I], s:I, s:b, s:{s:o, s:o, s:o}, s:o, s:o, s:{s:I, s:I, s:I}, s:o*, "
+        "s:o*}",
         "version", GNOMON_VERSION, "device", json_text(device->renderer), "scene", "triangles", (json_int_t)scene->triangle_count,
         "drawn_triangles", (json_int_t)scene->drawn_triangle_count, "vertices", (json_int_t)scene->vertex_count, "lights",
         (json_int_t)settings->light_count, "algorithm", settings->system->name, "params",
@@ -70,7 +82,15 @@ json_t *figures_render(const struct scene *scene, const struct render_settings *
         (json_int_t)settings->height, "frames", (json_int_t)m->frames, "moving", m->moving, "frame_ms", "min",
         json_number(m->min_ms), "median", json_number(m->median_ms), "p95", json_number(m->p95_ms), "passes", passes(m),
         "visibility_ms", json_number(visibility), "memory", "shadow_bytes", (json_int_t)m->shadow_bytes, "shadow_bytes_max",
-        (json_int_t)m->shadow_bytes_max, "peak_bytes", peak_bytes());
+        (json_int_t)m->shadow_bytes_max, "peak_bytes", peak_bytes(), "convergence", convergence, "figures",
+        figures_told(m->last.figures, m->last.figure_count));
+}
+
+json_t *figures_frame(const struct frame_info *frame)
+{
+    return json_pack("{s:o, s:I, s:b, s:b, s:o*}", "frame_ms", json_number(frame->frame_ms), "shadow_bytes",
+                     (json_int_t)frame->shadow_bytes, "prepared", frame->prepared, "converged", frame->converged, "figures",
+                     figures_told(frame->figures, frame->figure_count));
 }
 
 json_t *figures_errors(const struct metrics *m)

@@ -15,11 +15,18 @@ struct stage;
 json_t *figures_render(const struct scene *scene, const struct render_settings *settings, const struct device_info *device,
                        const struct measurement *measured);
 
+/* A row of a sequence: {frame_ms, shadow_bytes, prepared, converged, figures}. */
+json_t *figures_frame(const struct frame_info *frame);
+
 /* The error figures of one light, or pooled over all. What was not measured is null. */
 json_t *figures_errors(const struct metrics *metrics);
 
+/* What a system tells of itself: {name: value}; NULL where it tells nothing. */
+json_t *figures_told(const struct shadow_figure *figures, size_t count);
+
 /* Adds what only a comparison has to figures_render()'s object. */
-void figures_add_comparison(json_t *figures, const struct against *against, const struct stage *stage, const struct comparison *c);
+void figures_add_comparison(json_t *figures, const struct against *against, const struct stage *stage,
+                            const struct comparison *c);
 
 /* Values of a system's parameters: {"size": 1024, "layout": "exact", ...}; a choice that is a number is written as one. */
 json_t *figures_params(const struct shadow_system *system, const struct shadow_params *params);

@@ -36,6 +36,7 @@ struct run {
     double *times;            /* frames */
     double *pass[PASS_COUNT]; /* frames each */
     void *pixels;
+    const struct frame_sink *sink; /* NULL: nobody looks */
     struct progress *progress;
     double progress_from, progress_share;
 };
@@ -85,6 +86,8 @@ static bool run_frames(struct run *run, struct measurement *out, struct error *e
             return false;
         if (timed)
             keep_times(run, i - run->untimed, &out->last);
+        if (run->sink && !run->sink->take(run->sink->context, i, &out->last, run->pixels, err))
+            return false;
         out->shadow_bytes = out->last.shadow_bytes;
         if (out->shadow_bytes > out->shadow_bytes_max)
             out->shadow_bytes_max = out->shadow_bytes;
@@ -135,19 +138,42 @@ unsigned measure_default_frames(double frame_ms)
     return fit >= FRAMES_TIMED_DEFAULT ? FRAMES_TIMED_DEFAULT : fit < UNTIMED_FRAMES ? UNTIMED_FRAMES : (unsigned)fit;
 }
 
+static bool run_timed(struct run *run, struct measurement *out, struct error *err)
+{
+    if (!run_frames(run, out, err))
+        return false;
+    pass_medians(run, out);
+    out->min_ms = quantile(run->times, run->frames, 0);
+    out->median_ms = quantile(run->times, run->frames, 0.5);
+    out->p95_ms = quantile(run->times, run->frames, 0.95);
+    return true;
+}
+
 static bool measure_times(struct stage *stage, struct progress *progress, struct measurement *out, struct error *err)
 {
     struct run run;
+    bool progressive = stage->settings.system->converged && !out->moving;
     bool good = run_start(&run, stage, out->frames, out->moving, err);
     run.progress = progress;
     run.progress_share = 0.5;
-    good = good && run_frames(&run, out, err);
-    if (good) {
-        pass_medians(&run, out);
-        out->min_ms = quantile(run.times, run.frames, 0);
-        out->median_ms = quantile(run.times, run.frames, 0.5);
-        out->p95_ms = quantile(run.times, run.frames, 0.95);
-    }
+    good = good && (!progressive || stage_converge(stage, &run.settings, run.pixels, &out->last, &out->converge_frames, err)) &&
+           run_timed(&run, out, err);
+    run_finish(&run);
+    return good;
+}
+
+bool measure_progress(struct stage *stage, unsigned frames, const struct frame_sink *sink, struct progress *progress,
+                      struct measurement *out, struct error *err)
+{
+    struct run run;
+    *out = (struct measurement){.frames = frames};
+    bool good = run_start(&run, stage, frames, false, err);
+    run.untimed = 0;
+    run.settings.finish_each_pass = true;
+    run.sink = sink;
+    run.progress = progress;
+    run.progress_share = 1;
+    good = good && run_timed(&run, out, err);
     run_finish(&run);
     return good;
 }

@@ -200,8 +200,10 @@ static void deliver(struct render_loop *loop, const struct frame_info *info)
     job->header.render_us = frame_microseconds(info->frame_ms);
     pthread_mutex_lock(&loop->mutex);
     struct stream_view *view = render_loop_find_view(loop, job->header.view);
-    if (view)
+    if (view) {
         view->last = *info;
+        view->unfinished = !info->converged;
+    }
     pthread_mutex_unlock(&loop->mutex);
     if (job->request)
         render_request_tell(job->request, STAGE_ENCODING, -1);

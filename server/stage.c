@@ -66,3 +66,17 @@ bool stage_frame(struct stage *stage, const struct render_settings *settings, vo
         return true;
     return error_set(err, ERROR_BUG, NULL, "the frame was lost without a reason; please report this");
 }
+
+bool stage_converge(struct stage *stage, const struct render_settings *settings, void *pixels, struct frame_info *info,
+                    unsigned *frames, struct error *err)
+{
+    unsigned done = 0;
+    do {
+        if (!stage_frame(stage, settings, pixels, info, err))
+            return false;
+        done++;
+    } while (!info->converged && done < STAGE_CONVERGE_MAX);
+    if (frames)
+        *frames = done;
+    return true;
+}

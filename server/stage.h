@@ -32,3 +32,9 @@ void *stage_picture(const struct render_settings *settings, struct error *err);
 /* One frame, nothing else in flight; `pixels` holds stage_picture_bytes(). */
 bool stage_frame(struct stage *stage, const struct render_settings *settings, void *pixels, struct frame_info *info,
                  struct error *err);
+
+/* Frames of the same view until another would change nothing (of most systems: one), at most STAGE_CONVERGE_MAX. Tells the last in *info,
+ * whose `converged` is false if the cap came first, and how many there were in *frames (may be NULL). */
+bool stage_converge(struct stage *stage, const struct render_settings *settings, void *pixels, struct frame_info *info,
+                    unsigned *frames, struct error *err);
+enum { STAGE_CONVERGE_MAX = 512 };

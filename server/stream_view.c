@@ -9,7 +9,7 @@ static uint64_t least_interval_us(const struct stream_view *v)
 
 enum stream_need stream_view_need(const struct stream_view *v, uint64_t now_us, uint64_t *due_us)
 {
-    bool changed = v->shown != v->revision;
+    bool changed = v->shown != v->revision || v->unfinished;
     if (v->wanted.paused || (!changed && v->still_shown))
         return STREAM_NOTHING;
     if (v->blocked)

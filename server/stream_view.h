@@ -39,7 +39,8 @@ struct stream_view {
     struct view_state wanted;
     uint64_t revision, shown; /* of `wanted`, and of the newest frame submitted */
     bool still_shown;
-    bool blocked; /* its socket has pending writes */
+    bool unfinished; /* the newest frame collected: the system would add to it */
+    bool blocked;    /* its socket has pending writes */
     uint64_t changed_us, submitted_us;
     uint64_t frame_number; /* of the newest frame submitted; 0: none */
     struct stream_frame in_flight[STREAM_IN_FLIGHT];

@@ -51,14 +51,12 @@ static void add_pixel(const struct metrics_input *in, uint32_t x, uint32_t y, st
     m->acne += classes == CLASS_LIT;
 }
 
-static int64_t differing_bits(const struct metrics_input *in)
+int64_t metrics_wrong_samples(const struct sample_masks *a, const struct sample_masks *b, size_t pixels)
 {
-    if (!in->mask || !in->mask_reference)
-        return -1;
-    int64_t bits = 0;
-    for (size_t i = 0; i < (size_t)in->width * in->height; i++)
-        bits += __builtin_popcount(in->mask[i] ^ in->mask_reference[i]);
-    return bits;
+    int64_t samples = 0;
+    for (size_t i = 0; i < pixels; i++)
+        samples += __builtin_popcount((a->receivers[i] ^ b->receivers[i]) | (a->lit[i] ^ b->lit[i]));
+    return samples;
 }
 
 static double root_mean(double sum, uint64_t count) { return count ? sqrt(sum / (double)count) : 0; }
@@ -157,7 +155,7 @@ bool metrics_pool_add(struct metrics_pool *pool, const struct metrics_input *in,
         for (uint32_t x = 0; x < in->width; x++)
             if (in->receiver[(size_t)y * in->width + x])
                 add_pixel(in, x, y, &m, &sums);
-    m.wrong_samples = differing_bits(in);
+    m.wrong_samples = in->wrong_samples;
     derive(&m, &sums, in->one_triangle != NULL);
     if (!contour_shifts(&contours, &shifts, &count, &m.boundary.edge_shift_max) || !keep_shifts(pool, shifts, count))
         goto done;

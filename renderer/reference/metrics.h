@@ -7,11 +7,11 @@
 
 struct metrics_input {
     uint32_t width, height;
-    const float *visibility;               /* tested, [0,1] */
-    const float *reference;                /* [0,1] */
-    const uint8_t *receiver;               /* 1 where the pixel counts */
-    const uint8_t *one_triangle;           /* 1 where all 32 samples hit one triangle; NULL: rmse_one_receiver is not a number */
-    const uint32_t *mask, *mask_reference; /* 32-sample masks; NULL unless both sides have them */
+    const float *visibility;     /* tested, [0,1] */
+    const float *reference;      /* [0,1] */
+    const uint8_t *receiver;     /* 1 where the pixel counts */
+    const uint8_t *one_triangle; /* 1 where all 32 samples hit one triangle; NULL: rmse_one_receiver is not a number */
+    int64_t wrong_samples;       /* as metrics_wrong_samples() counted; -1: not measured */
 };
 
 struct metrics {
@@ -30,6 +30,14 @@ struct metrics {
             edge_shift_max; /* 1/32 px; contour at V = 0.5, capped at 8 px; max = symmetric Hausdorff */
     } boundary;
 };
+
+/* Which of a pixel's 32 samples have a receiver that faces the light, and which of those it reaches; an entry a pixel. */
+struct sample_masks {
+    uint32_t *receivers, *lit;
+};
+
+/* Samples of `pixels` pixels about which the two disagree: receiver or not, lit or not. */
+int64_t metrics_wrong_samples(const struct sample_masks *a, const struct sample_masks *b, size_t pixels);
 
 /* False when memory is out. */
 bool metrics_measure(const struct metrics_input *in, struct metrics *out);

@@ -27,6 +27,7 @@ static void destroy(struct light_state *s)
 {
     if (s->system->finish && s->state)
         s->system->finish(s->state);
+    free(s->casters);
     free(s->state);
     free(s);
 }
@@ -52,11 +53,13 @@ static struct light_state *find(struct light_states *s, const struct shadow_syst
 {
     struct light_state *moved = NULL;
     for (struct light_state *state = s->first; state; state = state->next) {
-        if (state->system != system || !same_params(system, &state->params, params) || state->traced != in->trace_maps)
+        if (state->system != system || !same_params(system, &state->params, params) || state->traced != in->trace_maps ||
+            state->memory != in->memory)
             continue;
-        if (same_light(&state->light, in->light))
+        bool own = state->viewer == in->viewer;
+        if (same_light(&state->light, in->light) && (own || !(system->flags & SHADOW_VIEW_DRIVEN)))
             return state;
-        if (state->viewer == in->viewer && state->light_index == in->light_index && state->last_frame < s->frame)
+        if (own && state->light_index == in->light_index && state->last_frame < s->frame)
             moved = state;
     }
     return moved;
@@ -76,6 +79,7 @@ static struct light_state *create(struct light_states *s, const struct shadow_sy
     state->light_index = in->light_index;
     state->viewer = in->viewer;
     state->traced = in->trace_maps;
+    state->memory = in->memory;
     if (system->init && !system->init(state->state, in, err)) {
         destroy(state);
         return NULL;
@@ -88,20 +92,17 @@ static struct light_state *create(struct light_states *s, const struct shadow_sy
 static bool prepare(struct light_state *state, const struct fit_geometry *geometry, struct shadow_input *in, struct error *err)
 {
     const struct shadow_system *system = state->system;
-    uint32_t *casters = NULL;
     if (system->flags & SHADOW_USES_MAPS) {
         int size = shadow_param_index(system, "size"), fit = shadow_param_index(system, "fit");
-        casters = malloc((geometry->scene->instance_count + 1) * sizeof *casters);
-        if (!casters)
+        if (!state->casters)
+            state->casters = malloc((geometry->scene->instance_count + 1) * sizeof *state->casters);
+        if (!state->casters)
             return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for shadows");
-        shadow_fit_compute(geometry, in->light, (uint32_t)in->params[size], fit >= 0 && in->params[fit] == 1, casters,
+        shadow_fit_compute(geometry, in->light, (uint32_t)in->params[size], fit >= 0 && in->params[fit] == 1, state->casters,
                            &state->fit);
         in->fit = &state->fit;
     }
-    bool ok = !system->prepare || system->prepare(state->state, in, err);
-    state->fit.casters = NULL;
-    free(casters);
-    return ok;
+    return !system->prepare || system->prepare(state->state, in, err);
 }
 
 struct light_state *light_states_get(struct light_states *s, const struct fit_geometry *geometry,
@@ -143,3 +144,5 @@ void light_states_finish(struct light_states *s)
 }
 
 size_t light_state_bytes(const struct light_state *s) { return s->system->bytes ? s->system->bytes(s->state) : 0; }
+
+bool light_state_converged(const struct light_state *s) { return !s->system->converged || s->system->converged(s->state); }

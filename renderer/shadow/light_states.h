@@ -20,8 +20,10 @@ struct light_state {
     bool prepared;
     bool traced; /* its maps were traced */
     uint64_t last_frame;
-    struct shadow_fit fit; /* casters not kept */
-    void *state;           /* system->state_size bytes */
+    size_t memory; /* as in struct shadow_input */
+    struct shadow_fit fit;
+    uint32_t *casters; /* behind fit; owned */
+    void *state;       /* system->state_size bytes */
     struct light_state *next;
 };
 
@@ -43,3 +45,4 @@ void light_states_invalidate(struct light_states *s);
 void light_states_finish(struct light_states *s);
 
 size_t light_state_bytes(const struct light_state *s);
+bool light_state_converged(const struct light_state *s);

@@ -3,6 +3,7 @@
 
 #include <epoxy/gl.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/error.h"
 #include "blocks.h"
@@ -116,6 +117,18 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
     return gl_check(in->gl, err);
 }
 
+static bool read_masks(void *state, const struct shadow_input *in, uint32_t *receivers, uint32_t *lit, struct error *err)
+{
+    const struct state *s = state;
+    (void)err;
+    size_t pixels = (size_t)in->view->width * in->view->height;
+    if (in->params[PARAM_SAMPLES] != 1 || !s->masks || s->pixels < pixels)
+        return false;
+    memcpy(receivers, s->receivers, pixels * sizeof *receivers);
+    memcpy(lit, s->lit, pixels * sizeof *lit);
+    return true;
+}
+
 static void finish(void *state)
 {
     struct state *s = state;
@@ -142,4 +155,5 @@ const struct shadow_system shadow_reference = {
     .resolve = resolve,
     .finish = finish,
     .bytes = bytes,
+    .read_masks = read_masks,
 };

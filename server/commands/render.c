@@ -8,8 +8,10 @@
 #include "command.h"
 #include "common_options.h"
 #include "figures.h"
+#include "frame_name.h"
 #include "import/import.h"
 #include "measure.h"
+#include "numbers.h"
 #include "options.h"
 #include "output.h"
 #include "progress.h"
@@ -19,7 +21,8 @@ struct render_options {
     struct common_options common;
     const char *output;
     enum image_format format;
-    const char *stats; /* NULL: none */
+    const char *stats;    /* NULL: none */
+    unsigned progressive; /* frames; 0: until converged */
 };
 
 static bool set_output(void *target, const char *value, struct error *err)
@@ -42,11 +45,22 @@ static bool set_stats(void *target, const char *value, struct error *err)
     return true;
 }
 
+enum { PROGRESSIVE_MAX = 100000 };
+
+static bool set_progressive(void *target, const char *value, struct error *err)
+{
+    unsigned long n;
+    if (!number_parse_unsigned(value, 1, PROGRESSIVE_MAX, &n))
+        return error_set(err, ERROR_USAGE, "progressive", "1 to %d frames are accepted", PROGRESSIVE_MAX);
+    ((struct render_options *)target)->progressive = (unsigned)n;
+    return true;
+}
+
 static const struct option option_table[] = {
     {"o", "FILE", "the picture; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_output},
     {"stats", "FILE", "times, memory and sizes as JSON; - is standard output", set_stats},
     {"server", "URL", "let a running server render", NULL},
-    {"progressive", "N", "add up N frames", NULL},
+    {"progressive", "N", "render N frames of the still view and write the last, or, with #### in FILE, each", set_progressive},
     {0},
 };
 
@@ -59,9 +73,13 @@ static const struct syntax syntax = {
     .options = option_table,
     .notes =
         "Lights: position=x,y,z direction=x,y,z color=r,g,b intensity=X radius=X inner=DEG outer=DEG range=X; world coordinates,\n"
-        "scene units, degrees, candela (point, spot) or lux (directional).\n",
+        "scene units, degrees, candela (point, spot) or lux (directional).\n\n"
+        "Systems that refine their shadows from frame to frame are run until nothing changes any more (at most 512 frames; --stats says\n"
+        "how many), then timed. With --progressive N exactly N frames are rendered, from the first on, and --stats has a row for each:\n"
+        "its time, memory and what the system tells of itself.\n",
     .examples = "  gnomon render model.glb -o picture.png\n"
                 "  gnomon render builtin:dragon -o dragon.exr --size 1920x1080 --algorithm sm:size=2048 --stats -\n"
+                "  gnomon render model.glb -o 'refined.####.png' --progressive 30 --stats refined.json\n"
                 "  gnomon render model.glb -o top.jpg --eye 0,5,5 --target 0,0,0 --fov 35 \\\n"
                 "      --light 'spot position=2,4,1 direction=-2,-4,-1 intensity=500 inner=10 outer=30'\n",
 };
@@ -100,22 +118,62 @@ static void stamp_fill(struct stamp *s, const struct stage *stage, double frame_
 
 enum { PICTURE_QUALITY = 90 }; /* JPEG and WebP */
 
+static bool write_stamped(const struct render_options *o, const struct stage *stage, const char *path, const void *pixels,
+                          double frame_ms, struct error *err)
+{
+    struct stamp stamp;
+    stamp_fill(&stamp, stage, frame_ms);
+    return image_write(path, o->format, pixels, stage->settings.width, stage->settings.height, PICTURE_QUALITY, stamp.entries,
+                       STAMP_ENTRIES, err);
+}
+
 static bool write_picture(const struct render_options *o, struct stage *stage, double *frame_ms, struct error *err)
 {
     struct frame_info info;
-    struct stamp stamp;
     struct progress progress;
     void *pixels = stage_picture(&stage->settings, err);
     progress_init(&progress, "rendering", o->common.quiet);
-    bool good = pixels && stage_frame(stage, &stage->settings, pixels, &info, err);
+    bool good = pixels && stage_converge(stage, &stage->settings, pixels, &info, NULL, err);
     progress_finish(&progress);
-    if (good) {
-        *frame_ms = info.frame_ms;
-        stamp_fill(&stamp, stage, info.frame_ms);
-        good = image_write(o->output, o->format, pixels, stage->settings.width, stage->settings.height, PICTURE_QUALITY,
-                           stamp.entries, STAMP_ENTRIES, err);
-    }
+    *frame_ms = info.frame_ms;
+    good = good && write_stamped(o, stage, o->output, pixels, info.frame_ms, err);
     free(pixels);
+    return good;
+}
+
+/* The frames of --progressive, as they come. */
+struct sequence {
+    const struct render_options *options;
+    struct stage *stage;
+    json_t *rows;
+};
+
+static bool take_frame(void *context, unsigned frame, const struct frame_info *info, const void *pixels, struct error *err)
+{
+    struct sequence *s = context;
+    const struct render_options *o = s->options;
+    char path[4096];
+    json_array_append_new(s->rows, figures_frame(info));
+    bool each = frame_name(o->output, frame + 1, path, sizeof path);
+    return !(each || frame + 1 == o->progressive) ||
+           write_stamped(o, s->stage, each ? path : o->output, pixels, info->frame_ms, err);
+}
+
+static bool render_progress(const struct render_options *o, struct stage *stage, struct error *err)
+{
+    struct sequence sequence = {o, stage, json_array()};
+    const struct frame_sink sink = {take_frame, &sequence};
+    struct measurement measured;
+    struct progress progress;
+    progress_init(&progress, "rendering", o->common.quiet);
+    bool good = measure_progress(stage, o->progressive, &sink, &progress, &measured, err);
+    progress_finish(&progress);
+    if (good && o->stats) {
+        json_t *figures = figures_render(stage->scene, &stage->settings, renderer_device(stage->renderer), &measured);
+        json_object_set(figures, "progressive", sequence.rows);
+        good = output_json(o->stats, figures, err);
+    }
+    json_decref(sequence.rows);
     return good;
 }
 
@@ -165,7 +223,9 @@ int command_render(int argc, char **argv)
     bool good = check_outputs(&options, &err) && stage_init(&stage, scene, &options.common, &err);
     if (good) {
         stage.settings.format = options.format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
-        good = write_picture(&options, &stage, &frame_ms, &err) && write_stats(&options, &stage, frame_ms, &err);
+        good = options.progressive
+                   ? render_progress(&options, &stage, &err)
+                   : write_picture(&options, &stage, &frame_ms, &err) && write_stats(&options, &stage, frame_ms, &err);
     }
     stage_finish(&stage);
     return good ? 0 : command_fail(&err);

@@ -82,9 +82,10 @@ json_t *view_stats(struct server *server, const struct view_record *view, double
     json_int_t sent = (json_int_t)(v.bytes - *bytes);
     *frames = v.frames;
     *bytes = v.bytes;
-    return json_pack("{s:I, s:f, s:f, s:o, s:f, s:I, s:I, s:i, s:f, s:s, s:s, s:o, s:I}", "view", (json_int_t)view->id, "fps",
-                     fps, "frame_ms", v.last.frame_ms, "passes", passes, "encode_ms", v.encode_us / 1000.0, "bytes", sent,
+    return json_pack("{s:I, s:f, s:f, s:o, s:f, s:I, s:I, s:i, s:f, s:s, s:s, s:o, s:I, s:o*}", "view", (json_int_t)view->id,
+                     "fps", fps, "frame_ms", v.last.frame_ms, "passes", passes, "encode_ms", v.encode_us / 1000.0, "bytes", sent,
                      "dropped", (json_int_t)v.dropped, "in_flight", (int)v.in_flight_count, "rtt_ms", (double)v.rtt_us / 1000.0,
                      "algorithm", settings->system->name, "settings", algorithm, "params",
-                     figures_params(settings->system, &settings->params), "shadow_bytes", (json_int_t)v.last.shadow_bytes);
+                     figures_params(settings->system, &settings->params), "shadow_bytes", (json_int_t)v.last.shadow_bytes,
+                     "figures", figures_told(v.last.figures, v.last.figure_count));
 }

@@ -56,6 +56,15 @@ json "$work/stats.json" "keys == $stats_keys" 'stats: nothing else'
 json "$work/stats.json" '.frames == 4 and .moving and .size == [96, 64] and .algorithm == "sm" and .params.size == 128' 'stats: settings'
 json "$work/stats.json" '.scene.lights >= 1 and .maps[0].size == 128 and .memory.shadow_bytes >= 128 * 128 * 2' 'stats: maps and bytes'
 
+# --progressive: the last picture, or each; a row a frame.
+# shellcheck disable=SC2086
+good render builtin:box -o "$work/each.##.png" $small --progressive 3 --memory 64 --stats "$work/stats.json"
+json "$work/stats.json" '.frames == 3 and (.progressive | length == 3 and all(.[]; .converged and .frame_ms > 0 and .shadow_bytes > 0))' \
+    'stats: a row for each frame'
+json "$work/stats.json" '[.progressive[].prepared] == [true, false, false]' 'stats: maps are made once'
+cmp -s "$work/each.01.png" "$work/each.03.png" || [ -e "$work/each.02.png" ] || complain 'a picture for each frame'
+[ ! -e "$work/each.04.png" ] || complain 'more pictures than frames'
+
 # compare --json.
 error_keys='["acne","boundary","leaks","max_abs","misclassified","misclassified_fraction","receivers","rmse","rmse_one_receiver","wrong_samples"]'
 two_lights() {

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "figures.h"
+#include "frame_name.h"
 #include "measure.h"
 #include "reference/metrics.h"
 
@@ -90,6 +91,34 @@ static void has_null_for_what_was_not_measured(void **state)
     json_decref(errors);
 }
 
+static void tells_what_the_system_tells(void **state)
+{
+    (void)state;
+    struct frame_info frame = {.frame_ms = 3, .shadow_bytes = 5, .converged = true};
+    json_t *row = figures_frame(&frame);
+    assert_null(at(row, "figures"));
+    assert_true(json_is_true(at(row, "converged")) && json_is_false(at(row, "prepared")));
+    json_decref(row);
+    frame.figures[frame.figure_count++] = (struct shadow_figure){"nodes", 12};
+    frame.figures[frame.figure_count++] = (struct shadow_figure){"share", NAN};
+    row = figures_frame(&frame);
+    assert_true(json_real_value(at(row, "figures.nodes")) == 12);
+    assert_true(json_is_null(at(row, "figures.share")));
+    json_decref(row);
+}
+
+static void numbers_the_frames_of_a_pattern(void **state)
+{
+    (void)state;
+    char name[32];
+    assert_true(frame_name("out/frame.####.exr", 7, name, sizeof name));
+    assert_string_equal(name, "out/frame.0007.exr");
+    assert_true(frame_name("a#b##", 123, name, sizeof name));
+    assert_string_equal(name, "a#b123");
+    assert_false(frame_name("out#/frame.exr", 7, name, sizeof name));
+    assert_false(frame_name("frame.####.exr", 7, name, 8));
+}
+
 static void takes_quantiles_by_nearest_rank(void **state)
 {
     (void)state;
@@ -113,10 +142,9 @@ static void times_fewer_frames_where_they_are_slow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(has_every_member_of_the_contract),
-        cmocka_unit_test(has_null_for_what_was_not_measured),
-        cmocka_unit_test(takes_quantiles_by_nearest_rank),
-        cmocka_unit_test(times_fewer_frames_where_they_are_slow),
+        cmocka_unit_test(has_every_member_of_the_contract), cmocka_unit_test(has_null_for_what_was_not_measured),
+        cmocka_unit_test(tells_what_the_system_tells),      cmocka_unit_test(numbers_the_frames_of_a_pattern),
+        cmocka_unit_test(takes_quantiles_by_nearest_rank),  cmocka_unit_test(times_fewer_frames_where_they_are_slow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -152,7 +152,7 @@ static void says_what_it_would_take(void **state)
     refuses("-o 'bad': is bad; good is accepted", parse("x", "-o", "bad"));
     refuses("try --later is not built yet", parse("x", "--later", "1"));
     refuses("--time is not built yet", parse("x", "--time", "1"));
-    refuses("--memory is not built yet", parse("x", "--memory=5"));
+    refuses("1 to 1048576 MiB", parse("x", "--memory=-5"));
     refuses("is not built yet", parse("x", "--show", "difference"));
     refuses("SCENE is empty", parse(""));
 }

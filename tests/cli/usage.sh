@@ -31,9 +31,7 @@ done
 bad 64 'not built yet' bench
 bad 64 'not built yet' batch job.json
 bad 64 '--server is not built yet' render builtin:box -o "$work/a.png" --server http://127.0.0.1:1
-bad 64 '--progressive is not built yet' render builtin:box -o "$work/a.png" --progressive 4
 bad 64 '--time is not built yet' render builtin:box -o "$work/a.png" --time 1
-bad 64 '--memory is not built yet' render builtin:box -o "$work/a.png" --memory 100
 bad 64 'not built yet' render builtin:box -o "$work/a.png" --show difference
 bad 64 'arealight is not built yet' compare builtin:box --algorithm none --against arealight:rays=4
 bad 64 '--server is not built yet' list scenes --server http://127.0.0.1:1
@@ -47,6 +45,8 @@ bad 64 'standard output carries one thing' render builtin:box -o - --stats -
 bad 64 'standard output carries one thing' compare builtin:box --algorithm none -o - --json -
 bad 64 '1 to 16384' render builtin:box -o "$work/a.png" --size 16385x1
 bad 64 'needs --algorithm' compare builtin:box
+bad 64 '1 to 100000 frames' render builtin:box -o "$work/a.png" --progressive 0
+bad 64 '1 to 1048576 MiB' render builtin:box -o "$work/a.png" --memory 0
 bad 64 'algorithm' compare builtin:box --algorithm no_such_system
 bad 64 'against' compare builtin:box --algorithm none --against no_such_system
 bad 64 "there is no camera 'nobody'" render builtin:box -o "$work/a.png" --camera nobody

@@ -71,7 +71,7 @@ FNR == 1 {
     sub(/>.*/, "", name)
     only("^libwebsockets", " server/net.c ", "the network thread")
     # The renderer's front joins the parts: it binds their buffers, nothing more.
-    only("^epoxy/gl\\.h$", " gl draw passes shadow renderer/renderer.c renderer/frame.c ", "GL")
+    only("^epoxy/gl\\.h$", " gl draw passes shadow renderer/renderer.c renderer/frame.c renderer/reading.c ", "GL")
     only("^(epoxy/egl|GL/|GLES[23]?/|EGL/|KHR/)", " gl ", "GL")
     only("^(gbm|xf86drm)\\.h$", " gl ", "GL")
     only("^embree", " trace reference ", "ray tracing")

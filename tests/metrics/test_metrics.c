@@ -19,7 +19,13 @@ struct pictures {
 static struct metrics_input input_of(const struct pictures *p)
 {
     return (struct metrics_input){
-        .width = WIDTH, .height = HEIGHT, .visibility = p->tested, .reference = p->reference, .receiver = p->receiver};
+        .width = WIDTH,
+        .height = HEIGHT,
+        .visibility = p->tested,
+        .reference = p->reference,
+        .receiver = p->receiver,
+        .wrong_samples = -1,
+    };
 }
 
 static struct metrics measured(const struct pictures *p)
@@ -183,25 +189,39 @@ static void binary_edges_lie_between_pixels(void **state)
     assert_int_equal(m.misclassified, 2 * HEIGHT);
 }
 
-static void masks_and_single_triangles_are_counted(void **state)
+static void single_triangles_are_counted(void **state)
 {
     (void)state;
-    uint32_t a[N] = {0}, b[N] = {0};
     struct pictures p = all_lit();
     p.tested[3] = 0.5f;
     p.one[3] = p.one[4] = 1;
     p.tested[7] = 0;
-    a[3] = 0xff;
-    b[3] = 0x0f;
-    b[9] = 1;
     struct metrics_input in = input_of(&p);
     struct metrics m;
     in.one_triangle = p.one;
-    in.mask = a;
-    in.mask_reference = b;
+    assert_true(metrics_measure(&in, &m));
+    assert_true(near(m.rmse_one_receiver, sqrt(0.25 / 2)));
+}
+
+/* A sample that is wrong both ways counts once. */
+static void wrong_samples_are_counted(void **state)
+{
+    (void)state;
+    uint32_t a[2][N] = {0}, b[2][N] = {0};
+    const struct sample_masks tested = {a[0], a[1]}, truth = {b[0], b[1]};
+    assert_int_equal(metrics_wrong_samples(&tested, &truth, N), 0);
+    a[0][3] = b[0][3] = 0xff;
+    a[1][3] = 0x0f;
+    b[1][3] = 0x3c; /* bits 0, 1, 4, 5 */
+    b[0][9] = b[1][9] = 1u << 31;
+    assert_int_equal(metrics_wrong_samples(&tested, &truth, N), 5);
+    assert_int_equal(metrics_wrong_samples(&tested, &truth, 9), 4);
+    struct pictures p = all_lit();
+    struct metrics_input in = input_of(&p);
+    struct metrics m;
+    in.wrong_samples = 5;
     assert_true(metrics_measure(&in, &m));
     assert_int_equal(m.wrong_samples, 5);
-    assert_true(near(m.rmse_one_receiver, sqrt(0.25 / 2)));
 }
 
 static void lights_pool(void **state)
@@ -240,7 +260,8 @@ int main(void)
         cmocka_unit_test(shifts_are_capped_at_eight_pixels),
         cmocka_unit_test(hausdorff_looks_both_ways),
         cmocka_unit_test(binary_edges_lie_between_pixels),
-        cmocka_unit_test(masks_and_single_triangles_are_counted),
+        cmocka_unit_test(single_triangles_are_counted),
+        cmocka_unit_test(wrong_samples_are_counted),
         cmocka_unit_test(lights_pool),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -135,6 +135,7 @@ bool renderer_collect(struct renderer *r, bool wait, void *pixels, size_t size, 
                                 .width = f->settings.width,
                                 .height = f->settings.height,
                                 .format = f->settings.format,
+                                .converged = true,
                                 .frame_ms = (double)(clock_us() - f->started_us) / 1000};
     memmove(&r->flights[0], &r->flights[1], --r->count * sizeof r->flights[0]);
     atomic_fetch_add(&fake.collected, 1);
@@ -167,6 +168,25 @@ bool renderer_read_ids(struct renderer *r, uint32_t *out)
     for (size_t i = 0; i < (size_t)r->last.width * r->last.height; i++)
         out[i] = SCENE_NONE;
     return true;
+}
+
+size_t renderer_read_figures(const struct render_scene *s, unsigned light, struct shadow_figure out[SHADOW_FIGURES_MAX])
+{
+    (void)s, (void)light, (void)out;
+    return 0;
+}
+
+bool renderer_read_masks(struct render_scene *s, unsigned light, uint32_t *receivers, uint32_t *lit, struct error *err)
+{
+    (void)s, (void)light, (void)receivers, (void)lit, (void)err;
+    return false;
+}
+
+bool renderer_read_lists(struct render_scene *s, unsigned light, struct shadow_lists *out, struct shadow_fit *fit,
+                         struct error *err)
+{
+    (void)s, (void)light, (void)out, (void)fit, (void)err;
+    return false;
 }
 
 struct light light_turned(const struct scene *scene, const struct light *light, double degrees)

@@ -46,6 +46,19 @@ static void test_still_view_rests(void **state)
     assert_int_equal(need(&v, due + 3600000000ull), STREAM_NOTHING);
 }
 
+/* A progressive system's still view goes on until it has converged. */
+static void test_unfinished_view_goes_on(void **state)
+{
+    (void)state;
+    struct stream_view v = view_at(START);
+    assert_true(stream_view_ack(&v, show(&v, false, START), START + 20));
+    v.unfinished = true;
+    assert_int_equal(need(&v, START + 1000), STREAM_FRAME);
+    assert_true(stream_view_ack(&v, show(&v, false, START + 1000), START + 1020));
+    v.unfinished = false;
+    assert_int_equal(need(&v, START + 2000), STREAM_LATER);
+}
+
 static void test_credit(void **state)
 {
     (void)state;
@@ -142,6 +155,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_still_view_rests),
+        cmocka_unit_test(test_unfinished_view_goes_on),
         cmocka_unit_test(test_credit),
         cmocka_unit_test(test_ack_is_cumulative_and_checked),
         cmocka_unit_test(test_lost_frame_returns_credit),
