@@ -30,11 +30,23 @@ bool camera_check_look_at(const struct camera_choice *c, struct error *err)
     if (!(c->fov_deg >= FOV_MIN_DEG && c->fov_deg <= FOV_MAX_DEG))
         return error_set(err, ERROR_USAGE, "fov", "fov must be %g to %g degrees (the full vertical angle)", FOV_MIN_DEG,
                          FOV_MAX_DEG);
+    if (c->height != 0 && !(c->height >= ORTHO_MIN && c->height <= ORTHO_MAX))
+        return error_set(err, ERROR_USAGE, "height", "height must be %g to %g scene units (of an orthographic picture)",
+                         ORTHO_MIN, ORTHO_MAX);
     return true;
 }
 
 /* The near plane: a ten-thousandth of the distance looked at. Reversed-Z float depth has precision to spare at that ratio. */
 static const double NEAR_OF_DISTANCE = 1e-4;
+
+/* Parallel rays need a far end. From the eye on, everything there is. */
+static double far_of_scene(const struct scene *scene, const struct camera *c, double distance)
+{
+    if (dbox_is_empty(&scene->bounds))
+        return 2 * distance;
+    double center = dvec3_dot(dvec3_sub(c->eye, dbox_center(&scene->bounds)), c->back);
+    return fmax(2 * distance, center + 1.01 * dbox_radius(&scene->bounds));
+}
 
 static bool look_at(const struct scene *scene, const struct camera_choice *c, struct camera *out, struct error *err)
 {
@@ -49,6 +61,12 @@ static bool look_at(const struct scene *scene, const struct camera_choice *c, st
     out->yfov = c->fov_deg * (M_PI / 180);
     out->near = distance * NEAR_OF_DISTANCE;
     out->far = INFINITY;
+    if (c->height > 0) {
+        out->orthographic = true;
+        out->ymag = c->height / 2;
+        out->near = 0;
+        out->far = far_of_scene(scene, out, distance);
+    }
     return true;
 }
 

@@ -67,6 +67,15 @@ static bool set_fov(void *target, const char *value, struct error *err)
     return error_set(err, ERROR_USAGE, "fov", "%g to %g degrees are accepted", FOV_MIN_DEG, FOV_MAX_DEG);
 }
 
+static bool set_ortho(void *target, const char *value, struct error *err)
+{
+    struct common_options *o = target;
+    o->ortho_given = true;
+    if (number_parse(value, ORTHO_MIN, ORTHO_MAX, &o->camera.height))
+        return true;
+    return error_set(err, ERROR_USAGE, "ortho", "%g to %g scene units are accepted", ORTHO_MIN, ORTHO_MAX);
+}
+
 static bool set_light(void *target, const char *value, struct error *err)
 {
     struct common_options *o = target;
@@ -239,6 +248,7 @@ const struct option common_option_table[] = {
     {"target", "x,y,z", "look at this point, with --eye", set_target},
     {"up", "x,y,z", "what is up, with --eye (default 0,1,0)", set_up},
     {"fov", "DEG", "full vertical angle, with --eye (default 45)", set_fov},
+    {"ortho", "HEIGHT", "orthographic, with --eye: as many scene units from bottom to top, in place of --fov", set_ortho},
     {"light", "'KIND key=value ...'",
      "KIND point, spot or directional; repeat for more; replaces the scene's lights (keys below)", set_light},
     {"algorithm", "NAME[:key=value,...]", "shadow system and its parameters; gnomon list algorithms prints them", set_algorithm},
@@ -301,6 +311,8 @@ bool common_options_check(struct common_options *o, struct error *err)
     if ((o->up_given || o->fov_given) && !o->eye_given)
         return error_set(err, ERROR_USAGE, o->up_given ? "up" : "fov", "%s is accepted only with --eye and --target",
                          o->up_given ? "--up" : "--fov");
+    if (o->ortho_given && (o->fov_given || !o->eye_given))
+        return error_set(err, ERROR_USAGE, "ortho", "--ortho is accepted only with --eye and --target, and without --fov");
     if (!o->eye_given)
         return true;
     o->camera.source = CAMERA_LOOK_AT;

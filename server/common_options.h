@@ -14,7 +14,7 @@
 struct common_options {
     uint32_t width, height;
     struct camera_choice camera;
-    bool camera_named, eye_given, target_given, up_given, fov_given;
+    bool camera_named, eye_given, target_given, up_given, fov_given, ortho_given;
     struct light lights[RENDERER_LIGHTS_MAX]; /* world; none: the scene's */
     size_t light_count;
     const struct shadow_system *system; /* NULL: the renderer's default */

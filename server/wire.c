@@ -22,8 +22,14 @@ static bool read_look_at(const json_t *value, struct camera_choice *out, struct 
     struct given given;
     if (!members_read(value, "camera", look_at_members, &m, &given, err))
         return false;
-    *out = (struct camera_choice){
-        .source = CAMERA_LOOK_AT, .eye = vector(m.eye), .target = vector(m.target), .up = vector(m.up), .fov_deg = m.fov};
+    *out = (struct camera_choice){.source = CAMERA_LOOK_AT,
+                                  .eye = vector(m.eye),
+                                  .target = vector(m.target),
+                                  .up = vector(m.up),
+                                  .fov_deg = m.fov,
+                                  .height = m.height};
+    if (is_given(given, LOOK_AT_FOV) && is_given(given, LOOK_AT_HEIGHT))
+        return error_set(err, ERROR_USAGE, "camera.height", "camera.height and camera.fov exclude each other: give one of them");
     return camera_check_look_at(out, err);
 }
 
@@ -34,7 +40,7 @@ bool wire_read_camera(const json_t *value, struct camera_choice *out, char name[
     bool is_name = json_is_string(value) && json_string_length(value) > 0 && json_string_length(value) < WIRE_CAMERA_NAME_MAX;
     if (!is_name && !(json_is_integer(value) && json_integer_value(value) >= 0))
         return error_set(err, ERROR_USAGE, "camera",
-                         "camera has the wrong form; a name, an index or {eye, target, up, fov} is accepted");
+                         "camera has the wrong form; a name, an index or {eye, target, up, fov or height} is accepted");
     if (is_name)
         snprintf(name, WIRE_CAMERA_NAME_MAX, "%s", json_string_value(value));
     else
@@ -120,10 +126,13 @@ json_t *wire_camera(const struct scene *scene, const struct camera *camera)
         distance = least > 0 ? least : 1;
     struct dvec3 eye = dvec3_add(camera->eye, scene->origin);
     struct dvec3 target = dvec3_mad(eye, camera->back, -distance);
-    /* An orthographic camera as the perspective one that sees as much at the target. */
-    double fov = camera->orthographic ? 2 * atan(camera->ymag / distance) : camera->yfov;
-    return json_pack("{s:o, s:o, s:o, s:f, s:o}", "eye", listing_point(eye), "target", listing_point(target), "up",
-                     listing_point(camera->up), "fov", fov * (180 / M_PI), "name", json_text(camera->name));
+    json_t *object = json_pack("{s:o, s:o, s:o, s:o}", "eye", listing_point(eye), "target", listing_point(target), "up",
+                               listing_point(camera->up), "name", json_text(camera->name));
+    if (camera->orthographic)
+        json_object_set_new(object, "height", json_number(2 * camera->ymag));
+    else
+        json_object_set_new(object, "fov", json_number(camera->yfov * (180 / M_PI)));
+    return object;
 }
 
 json_t *wire_lights(const struct scene *scene, const struct render_settings *settings)

@@ -12,7 +12,7 @@ struct error;
 
 #define WIRE_CAMERA_NAME_MAX 64
 
-/* A name, an index or {eye, target, up, fov}. `name` is what out->name will point to. */
+/* A name, an index or {eye, target, up, fov or height}. `name` is what out->name will point to. */
 bool wire_read_camera(const json_t *value, struct camera_choice *out, char name[WIRE_CAMERA_NAME_MAX], struct error *err);
 
 /* {kind, and --light's keys}. `light` is the light to change: keys not given stay, unless the kind changes; NULL for a new one, whose
@@ -25,7 +25,7 @@ bool wire_read_lights(const struct scene *scene, const json_t *value, struct ren
 /* A number of stops, or "auto". */
 bool wire_read_exposure(const json_t *value, struct render_settings *settings, struct error *err);
 
-/* {eye, target, up, fov} with the target at the scene's depth, for viewers that orbit. */
+/* {eye, target, up, fov or height, name} with the target at the scene's depth, for viewers that orbit. */
 json_t *wire_camera(const struct scene *scene, const struct camera *camera);
 json_t *wire_lights(const struct scene *scene, const struct render_settings *settings);
 /* {scene, triangles, drawn_triangles, vertices, bounds, cameras, lights} */

@@ -84,6 +84,21 @@ static void looks_from_eye_to_target(void **state)
     assert_true(c.near > 0 && c.far > c.near && !c.orthographic);
 }
 
+static void looks_along_parallel_rays(void **state)
+{
+    (void)state;
+    struct camera_choice choice = look(dvec3(100, 5, 10), dvec3(100, 5, 0));
+    choice.height = 3;
+    struct camera c;
+    struct error err = {0};
+    assert_true(camera_choose(&without, &choice, 1, &c, &err));
+    assert_true(c.orthographic && c.ymag == 1.5 && c.near == 0);
+    assert_true(c.far >= 20 && isfinite(c.far)); /* what lies behind the target is seen too */
+    choice.height = -1;
+    assert_false(camera_choose(&without, &choice, 1, &c, &err));
+    assert_string_equal(err.field, "height");
+}
+
 static void has_unit_orthogonal_axes(void **state)
 {
     (void)state;
@@ -123,7 +138,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chooses_by_name_and_index),       cmocka_unit_test(frames_the_scene),
         cmocka_unit_test(refuses_and_lists_what_there_is), cmocka_unit_test(looks_from_eye_to_target),
-        cmocka_unit_test(has_unit_orthogonal_axes),        cmocka_unit_test(refuses_impossible_views),
+        cmocka_unit_test(looks_along_parallel_rays),       cmocka_unit_test(has_unit_orthogonal_axes),
+        cmocka_unit_test(refuses_impossible_views),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -162,6 +162,7 @@ static void names_the_range_of_every_value(void **state)
     (void)state;
     refuses("1 to 16384", parse("x", "--size", "0x5"));
     refuses("0.01 to 179 degrees", parse("x", "--fov", "180"));
+    refuses("scene units", parse("x", "--ortho", "0"));
     refuses("x,y,z", parse("x", "--eye", "1,2"));
     refuses("shaded, visibility, depth, normal or id", parse("x", "--show", "wire"));
     refuses("auto or -64 to 64", parse("x", "--exposure", "65"));
@@ -182,6 +183,8 @@ static void refuses_what_does_not_go_together(void **state)
     refuses("belong together", parse("x", "--target", "1,2,3"));
     refuses("exclude each other", parse("x", "--eye", "1,2,3", "--target", "0,0,0", "--camera", "0"));
     refuses("--fov is accepted only with", parse("x", "--fov", "40"));
+    refuses("--ortho is accepted only with", parse("x", "--ortho", "2"));
+    refuses("and without --fov", parse("x", "--eye", "1,2,3", "--target", "0,0,0", "--ortho", "2", "--fov", "40"));
     refuses("--up is accepted only with", parse("x", "--up", "0,1,0"));
     refuses("two different points", parse("x", "--eye", "1,2,3", "--target", "1,2,3"));
 }
