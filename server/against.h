@@ -8,16 +8,18 @@
 
 struct error;
 
-enum against_kind { AGAINST_POINT, AGAINST_SAMPLES32, AGAINST_SYSTEM };
+enum against_kind { AGAINST_POINT, AGAINST_SAMPLES32, AGAINST_AREALIGHT, AGAINST_SYSTEM };
 
 /* What is taken for true. */
 struct against {
     enum against_kind kind;
     const struct shadow_system *system; /* AGAINST_SYSTEM */
     struct shadow_params params;
+    double radius; /* AGAINST_AREALIGHT: of the light's disc, scene units (directional: degrees); 0: tracer_area_radius() */
+    unsigned rays; /* AGAINST_AREALIGHT: a pixel */
 };
 
-/* "point", "samples32" or an algorithm with parameters. ERROR_USAGE. */
+/* "point", "samples32", "arealight[:radius=R,rays=N]" or an algorithm with parameters. ERROR_USAGE. */
 bool against_parse(const char *text, struct against *out, struct error *err);
 /* The same back, every parameter written out. `out` holds at least 256 bytes. */
 void against_format(const struct against *against, char *out, size_t size);

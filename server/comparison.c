@@ -128,15 +128,41 @@ static bool render_truth(struct stage *stage, const struct against *against, str
     return good;
 }
 
+/* What truth is made with; trees that the kind of truth has no use for are NULL. */
+struct truth {
+    const struct stage *stage;
+    const struct against *against;
+    struct view view;
+    struct reference *reference;
+    struct tracer *tracer;
+};
+
+static bool truth_init(struct truth *t, const struct stage *stage, const struct against *against, struct comparison *c,
+                       struct error *err)
+{
+    unsigned threads = job_pool_threads(stage->pool);
+    *t = (struct truth){
+        .stage = stage, .against = against, .view = view_from_camera(&stage->settings.camera, c->width, c->height)};
+    if (!(t->reference = reference_create(stage->scene, threads, err)))
+        return false;
+    return against->kind == AGAINST_SAMPLES32 || (t->tracer = tracer_create(stage->scene, threads, err));
+}
+
+static void truth_finish(struct truth *t)
+{
+    tracer_destroy(t->tracer);
+    reference_destroy(t->reference);
+}
+
 /* Which pixels lie wholly in one triangle: the camera's traced picture once for each sample, the view shifted so that the sample falls
  * on the pixel's centre. Only a classification of pixels, so the tracer's single precision does. */
-static bool find_one_triangle(const struct stage *stage, const struct view *view, struct comparison *c, struct error *err)
+static bool find_one_triangle(const struct truth *t, struct comparison *c, struct error *err)
 {
     size_t pixels = (size_t)c->width * c->height;
-    struct tracer *tracer = tracer_create(stage->scene, job_pool_threads(stage->pool), err);
+    const struct view *view = &t->view;
     uint32_t *first = malloc(pixels * sizeof *first), *ids = malloc(pixels * sizeof *ids);
-    bool good = tracer && first && ids;
-    if (tracer && !good)
+    bool good = first && ids;
+    if (!good)
         error_set(err, ERROR_TRY_AGAIN, "size", "memory is out for the triangles of %zu pixels", pixels);
     for (int i = 0; good && i < 32; i++) {
         struct view shifted = *view;
@@ -144,25 +170,23 @@ static bool find_one_triangle(const struct stage *stage, const struct view *view
         double dy = (view_samples32[i][1] - 0.5) * (view->bottom - view->top) / view->height;
         shifted.left += dx, shifted.right_edge += dx;
         shifted.top += dy, shifted.bottom += dy;
-        tracer_camera(tracer, &shifted, stage->pool, i ? ids : first, NULL);
+        tracer_camera(t->tracer, &shifted, t->stage->pool, i ? ids : first, NULL);
         for (size_t p = 0; p < pixels; p++)
             c->one_triangle[p] = i ? c->one_triangle[p] && ids[p] == first[p] : first[p] != SCENE_NONE;
     }
     free(ids);
     free(first);
-    tracer_destroy(tracer);
     return good;
 }
 
-static bool trace_samples32(const struct reference *reference, const struct stage *stage, const struct view *view, size_t light,
-                            const struct reference_progress *progress, struct comparison *c, struct reference_counts *counts,
-                            struct error *err)
+static bool trace_samples32(const struct truth *t, size_t light, const struct reference_progress *progress, struct comparison *c,
+                            struct reference_counts *counts)
 {
     size_t pixels = (size_t)c->width * c->height;
     uint32_t *receivers = malloc(pixels * sizeof *receivers), *lit = malloc(pixels * sizeof *lit);
     bool good = receivers && lit &&
-                reference_samples32(reference, view, &stage->settings.lights[light], stage->pool, progress, receivers, lit,
-                                    c->one_triangle, counts);
+                reference_samples32(t->reference, &t->view, &t->stage->settings.lights[light], t->stage->pool, progress,
+                                    receivers, lit, c->one_triangle, counts);
     for (size_t p = 0; good && p < pixels; p++) {
         int facing = __builtin_popcount(receivers[p]);
         c->receiver[light][p] = facing > 0;
@@ -172,19 +196,38 @@ static bool trace_samples32(const struct reference *reference, const struct stag
         c->wrong_samples[light] = metrics_wrong_samples(&c->masks[light], &(struct sample_masks){receivers, lit}, pixels);
     free(receivers);
     free(lit);
-    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference was stopped early");
+    return good;
 }
 
-/* With a system as the reference, tracing says only which pixels count. */
-static bool trace_point(const struct reference *reference, const struct stage *stage, const struct view *view, size_t light,
-                        const struct reference_progress *progress, bool keep, struct comparison *c,
-                        struct reference_counts *counts, struct error *err)
+/* With a system as the reference, or a light that is a disc, this says only which pixels count. */
+static bool trace_point(const struct truth *t, size_t light, const struct reference_progress *progress, struct comparison *c,
+                        struct reference_counts *counts)
 {
+    bool keep = t->against->kind == AGAINST_POINT;
     float *scratch = keep ? NULL : malloc((size_t)c->width * c->height * sizeof *scratch);
-    bool good = (keep || scratch) && reference_point(reference, view, &stage->settings.lights[light], c->ids, stage->pool,
-                                                     progress, keep ? c->truth[light] : scratch, c->receiver[light], counts);
+    bool good = (keep || scratch) &&
+                reference_point(t->reference, &t->view, &t->stage->settings.lights[light], c->ids, t->stage->pool, progress,
+                                keep ? c->truth[light] : scratch, c->receiver[light], counts);
     free(scratch);
-    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the reference was stopped early");
+    return good;
+}
+
+static const double POINT_SHARE = 0.05; /* of the time that a disc's rays take */
+
+static bool trace_area(const struct truth *t, size_t light, const struct stretch *whole, struct comparison *c,
+                       struct reference_counts *counts)
+{
+    const struct light *l = &t->stage->settings.lights[light];
+    struct stretch first = {whole->progress, whole->from, whole->share * POINT_SHARE},
+                   second = {whole->progress, whole->from + first.share, whole->share - first.share};
+    const struct reference_progress report = {report_stretch, &first};
+    double radius = t->against->radius > 0 ? t->against->radius : tracer_area_radius(t->stage->scene, l);
+    if (!trace_point(t, light, &report, c, counts))
+        return false;
+    for (size_t p = 0; p < (size_t)c->width * c->height; p++)
+        counts->rays += c->receiver[light][p] * (uint64_t)t->against->rays;
+    return tracer_shadow_area(t->tracer, &t->view, l, radius, t->against->rays, c->ids, c->receiver[light], t->stage->pool,
+                              report_stretch, &second, c->truth[light]);
 }
 
 static double milliseconds(void)
@@ -194,19 +237,27 @@ static double milliseconds(void)
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
-static bool trace_lights(const struct reference *reference, const struct stage *stage, const struct against *against,
-                         const struct view *view, const struct reference_progress *progress, struct comparison *c,
+static bool trace_light(const struct truth *t, size_t light, const struct stretch *stretch, struct comparison *c,
+                        struct reference_counts *counts)
+{
+    const struct reference_progress report = {report_stretch, (void *)stretch};
+    switch (t->against->kind) {
+    case AGAINST_SAMPLES32: return trace_samples32(t, light, &report, c, counts);
+    case AGAINST_AREALIGHT: return trace_area(t, light, stretch, c, counts);
+    case AGAINST_POINT:
+    case AGAINST_SYSTEM: break;
+    }
+    return trace_point(t, light, &report, c, counts);
+}
+
+static bool trace_lights(const struct truth *t, const struct reference_progress *progress, struct comparison *c,
                          struct error *err)
 {
     for (size_t i = 0; i < c->light_count; i++) {
         struct reference_counts counts = {0};
         struct stretch stretch = {progress, (double)i / (double)c->light_count, 1.0 / (double)c->light_count};
-        const struct reference_progress report = {report_stretch, &stretch};
-        bool good = against->kind == AGAINST_SAMPLES32
-                        ? trace_samples32(reference, stage, view, i, &report, c, &counts, err)
-                        : trace_point(reference, stage, view, i, &report, against->kind == AGAINST_POINT, c, &counts, err);
-        if (!good)
-            return false;
+        if (!trace_light(t, i, &stretch, c, &counts))
+            return error_set(err, ERROR_TRY_AGAIN, NULL, "the reference was stopped early, or memory is out for it");
         c->counts.rays += counts.rays;
         c->counts.tests += counts.tests;
         c->counts.exact += counts.exact;
@@ -217,15 +268,14 @@ static bool trace_lights(const struct reference *reference, const struct stage *
 static bool compute_truth(const struct stage *stage, const struct against *against, const struct reference_progress *progress,
                           struct comparison *c, struct error *err)
 {
-    struct view view = view_from_camera(&stage->settings.camera, c->width, c->height);
-    struct reference *reference = reference_create(stage->scene, job_pool_threads(stage->pool), err);
-    if (!reference)
-        return false;
+    struct truth t;
+    bool good = truth_init(&t, stage, against, c, err);
     double start = milliseconds();
-    bool good = trace_lights(reference, stage, against, &view, progress, c, err);
+    good = good && trace_lights(&t, progress, c, err);
     c->reference_ms = milliseconds() - start;
-    reference_destroy(reference);
-    return good && (against->kind == AGAINST_SAMPLES32 || find_one_triangle(stage, &view, c, err));
+    good = good && (against->kind == AGAINST_SAMPLES32 || find_one_triangle(&t, c, err));
+    truth_finish(&t);
+    return good;
 }
 
 static bool measure(struct comparison *c, struct error *err)

@@ -36,3 +36,15 @@ void tracer_shadow_point(const struct tracer *t, const struct view *view, const 
 /* 32 primary and 32 shadow rays a pixel (view_samples32). receivers and lit: one mask a pixel; either may be NULL. */
 void tracer_shadow_samples32(const struct tracer *t, const struct view *view, const struct light *light, struct job_pool *pool,
                              uint32_t *receivers, uint32_t *lit);
+
+/* *arealight*: the fraction of `rays` fixed points of the light's disc (TRACER_AREA_RAYS_MAX at most) that each receiver sees; docs/truth.md.
+ * ids and receiver (1: counts) as reference_point() has them; visibility: 0 where there is no receiver. `report`, which may be NULL, is called
+ * now and then from any worker with done in [0, 1]; false stops early, and so does this. */
+bool tracer_shadow_area(const struct tracer *t, const struct view *view, const struct light *light, double radius, unsigned rays,
+                        const uint32_t *ids, const uint8_t *receiver, struct job_pool *pool,
+                        bool (*report)(void *context, double done), void *context, float *visibility);
+enum { TRACER_AREA_RAYS_MAX = 4096 };
+
+/* Radius of the disc when nobody said: the light's own, else 2 % of its distance from the scene's centre; for a directional light in degrees
+ * as seen from the receiver, 0.5 when it has none. */
+double tracer_area_radius(const struct scene *scene, const struct light *light);

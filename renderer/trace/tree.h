@@ -28,13 +28,14 @@ struct tracer {
 };
 
 /* Embree's accessors of packets of any width are C++ only. The layout they have: member k of lane i at [k * n + i] (rtcore_ray.h). */
-enum ray_member { RAY_DIR_X = 4, RAY_DIR_Y, RAY_DIR_Z };
+enum ray_member { RAY_DIR_X = 4, RAY_DIR_Y, RAY_DIR_Z, RAY_ID = 10 };
 enum hit_member { HIT_NG_X, HIT_NG_Y, HIT_NG_Z, HIT_U, HIT_V, HIT_PRIM_ID, HIT_GEOM_ID };
 
 static inline float ray_float(const struct RTCRayN *ray, enum ray_member member, unsigned n, unsigned i)
 {
     return ((const float *)ray)[(unsigned)member * n + i];
 }
+static inline unsigned ray_id(const struct RTCRayN *ray, unsigned n, unsigned i) { return ((const unsigned *)ray)[RAY_ID * n + i]; }
 static inline float hit_float(const struct RTCHitN *hit, enum hit_member member, unsigned n, unsigned i)
 {
     return ((const float *)hit)[(unsigned)member * n + i];

@@ -48,7 +48,7 @@ static bool set_json(void *target, const char *value, struct error *err)
 }
 
 static const struct option option_table[] = {
-    {"against", "REF", "point, samples32 or an algorithm (default point); arealight is not built yet", set_against},
+    {"against", "REF", "point, samples32, arealight[:radius=R,rays=N] or an algorithm (default point)", set_against},
     {"o", "DIFF", "picture of the differences; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_picture},
     {"json", "FILE", "times, memory and error figures as JSON; - is standard output", set_json},
     {0},
@@ -62,14 +62,17 @@ static const struct syntax syntax = {
     .common = true,
     .options = option_table,
     .notes =
-        "References: point traces one ray for the triangle at each pixel centre; samples32 traces 32 samples a pixel.\n\n"
+        "References: point traces one ray for the triangle at each pixel centre; samples32 traces 32 samples a pixel;\n"
+        "arealight sends N rays (default 256) from each pixel centre's receiver to a disc of radius R around the light (default: the\n"
+        "light's radius, else 2 % of its distance from the scene's centre; for directional lights R is in degrees, default 0.5).\n\n"
         "The difference picture: grey, where right; orange, where too bright (light leaks); blue, where too dark (acne); stronger\n"
         "colour, larger difference; with several lights, the largest. As EXR: R = tested, G = reference, B = tested - reference,\n"
         "A = 1 where the pixel counts.\n\n"
         "Figures are measured at one sample a pixel; --aa, --moving and --frames-timed change only the times of --json.\n",
     .examples = "  gnomon compare builtin:dragon --algorithm sm:size=1024 -o difference.png\n"
                 "  gnomon compare model.glb --algorithm pcf:kernel=7 --against samples32 --json -\n"
-                "  gnomon compare model.glb --algorithm pcf --against sm:size=4096\n",
+                "  gnomon compare model.glb --algorithm pcf --against sm:size=4096\n"
+                "  gnomon compare model.glb --algorithm pcf:kernel=9 --against arealight:radius=0.2\n",
 };
 
 static void print_row(const char *name, const struct metrics *m)

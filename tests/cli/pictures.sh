@@ -56,6 +56,16 @@ json "$work/stats.json" "keys == $stats_keys" 'stats: nothing else'
 json "$work/stats.json" '.frames == 4 and .moving and .size == [96, 64] and .algorithm == "sm" and .params.size == 128' 'stats: settings'
 json "$work/stats.json" '.scene.lights >= 1 and .maps[0].size == 128 and .memory.shadow_bytes >= 128 * 128 * 2' 'stats: maps and bytes'
 
+# arealight: with one ray it is point; more rays change the figures, and are said to.
+good compare builtin:box --size 96x64 --algorithm reference --against arealight:rays=1 --json -
+json "$work/out" '.misclassified == 0 and .max_abs == 0 and .receivers > 1000 and .against == "arealight:rays=1"' 'one ray of an area light is point'
+good compare builtin:box --size 96x64 --algorithm reference --against arealight:rays=16,radius=0.5 --json -
+json "$work/out" '.max_abs > 0 and .rmse > 0 and .against == "arealight:radius=0.5,rays=16" and .wrong_samples == null' 'an area light blurs'
+
+# Masks.
+good compare builtin:box --size 96x64 --algorithm reference:samples=32 --against samples32 --json -
+json "$work/out" '.wrong_samples == 0 and .per_light[0].wrong_samples == 0' 'the reference has no wrong sample'
+
 # --progressive: the last picture, or each; a row a frame.
 # shellcheck disable=SC2086
 good render builtin:box -o "$work/each.##.png" $small --progressive 3 --memory 64 --stats "$work/stats.json"

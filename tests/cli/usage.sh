@@ -33,7 +33,6 @@ bad 64 'not built yet' batch job.json
 bad 64 '--server is not built yet' render builtin:box -o "$work/a.png" --server http://127.0.0.1:1
 bad 64 '--time is not built yet' render builtin:box -o "$work/a.png" --time 1
 bad 64 'not built yet' render builtin:box -o "$work/a.png" --show difference
-bad 64 'arealight is not built yet' compare builtin:box --algorithm none --against arealight:rays=4
 bad 64 '--server is not built yet' list scenes --server http://127.0.0.1:1
 
 # Usage.
@@ -49,6 +48,8 @@ bad 64 '1 to 100000 frames' render builtin:box -o "$work/a.png" --progressive 0
 bad 64 '1 to 1048576 MiB' render builtin:box -o "$work/a.png" --memory 0
 bad 64 'algorithm' compare builtin:box --algorithm no_such_system
 bad 64 'against' compare builtin:box --algorithm none --against no_such_system
+bad 64 'rays of arealight' compare builtin:box --algorithm none --against arealight:rays=0
+bad 64 'radius=R and rays=N' compare builtin:box --algorithm none --against arealight:size=3
 bad 64 "there is no camera 'nobody'" render builtin:box -o "$work/a.png" --camera nobody
 bad 64 'scenes, algorithms or devices' list cameras
 bad 64 'no_such_scene' check builtin:no_such_scene
