@@ -7,6 +7,7 @@ struct error;
 int command_serve(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_compare(int argc, char **argv);
+int command_bench(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_list(int argc, char **argv);
 

@@ -16,7 +16,7 @@ static const struct command {
     {"serve", "serve scenes to browsers and scripts over HTTP and WebSocket", command_serve},
     {"render", "render a scene to a picture file", command_render},
     {"compare", "measure a shadow system's error against ray tracing", command_compare},
-    {"bench", "measure every system on a suite of scenes", NULL},
+    {"bench", "measure every system on a suite of scenes", command_bench},
     {"batch", "render many frames, on this machine or a farm", NULL},
     {"check", "load, validate and summarise a scene", command_check},
     {"list", "list scenes, algorithms or devices", command_list},

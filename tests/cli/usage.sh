@@ -28,7 +28,6 @@ for command in serve render compare; do
 done
 
 # What the contract has and this version does not.
-bad 64 'not built yet' bench
 bad 64 'not built yet' batch job.json
 bad 64 '--server is not built yet' render builtin:box -o "$work/a.png" --server http://127.0.0.1:1
 bad 64 '--time is not built yet' render builtin:box -o "$work/a.png" --time 1
