@@ -9,12 +9,19 @@
 #include "builtin/scenes.h"
 
 const struct builtin_desc *const builtin_list[] = {
-    &builtin_box.desc,           &builtin_ball.desc,
-    &builtin_tree.desc,          &builtin_butterfly.desc,
-    &builtin_dragon.desc,        &builtin_hard_grazing.desc,
-    &builtin_hard_contact.desc,  &builtin_hard_fan.desc,
-    &builtin_hard_depth.desc,    &builtin_hard_degenerate.desc,
-    &builtin_hard_twosided.desc, &builtin_hard_grid.desc,
+    &builtin_box.desc,
+    &builtin_ball.desc,
+    &builtin_tree.desc,
+    &builtin_butterfly.desc,
+    &builtin_dragon.desc,
+    &builtin_room.desc,
+    &builtin_hard_grazing.desc,
+    &builtin_hard_contact.desc,
+    &builtin_hard_fan.desc,
+    &builtin_hard_depth.desc,
+    &builtin_hard_degenerate.desc,
+    &builtin_hard_twosided.desc,
+    &builtin_hard_grid.desc,
 };
 
 const size_t builtin_count = sizeof builtin_list / sizeof builtin_list[0];

@@ -362,6 +362,17 @@ void mesh_builder_directional_light(struct mesh_builder *b, struct dvec3 directi
     add_light(b, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = direction, .intensity = intensity});
 }
 
+void mesh_builder_spot_light(struct mesh_builder *b, struct dvec3 position, struct dvec3 direction, double inner, double outer,
+                             float intensity)
+{
+    add_light(b, (struct light){.kind = LIGHT_SPOT,
+                                .position = position,
+                                .direction = direction,
+                                .inner = inner,
+                                .outer = outer,
+                                .intensity = intensity});
+}
+
 static void add_camera(struct mesh_builder *b, struct camera camera)
 {
     snprintf(camera.name, sizeof camera.name, "camera");
@@ -381,6 +392,12 @@ void mesh_builder_camera(struct mesh_builder *b, struct dvec3 eye, struct dvec3 
                                   .yfov = yfov,
                                   .near = near,
                                   .far = INFINITY});
+}
+
+void mesh_builder_name_camera(struct mesh_builder *b, const char *name)
+{
+    if (b->cameras.count)
+        snprintf(b->cameras.data[b->cameras.count - 1].name, sizeof b->cameras.data->name, "%s", name);
 }
 
 void mesh_builder_camera_above(struct mesh_builder *b, double height, double half_height)

@@ -86,7 +86,12 @@ void mesh_builder_ground(struct mesh_builder *b, double width, double depth, con
 void mesh_builder_point_light(struct mesh_builder *b, struct dvec3 position, float intensity);
 /* `direction` is stored as given: unit, the way the light travels. */
 void mesh_builder_directional_light(struct mesh_builder *b, struct dvec3 direction, float intensity);
+/* Half angles in radians; `direction` as above. */
+void mesh_builder_spot_light(struct mesh_builder *b, struct dvec3 position, struct dvec3 direction, double inner, double outer,
+                             float intensity);
 void mesh_builder_camera(struct mesh_builder *b, struct dvec3 eye, struct dvec3 target, double yfov);
+/* Names the camera made last; without, it is "camera". */
+void mesh_builder_name_camera(struct mesh_builder *b, const char *name);
 /* Looks straight down from `height`, picture right = +x, picture up = -z, 2 * half_height high. */
 void mesh_builder_camera_above(struct mesh_builder *b, double height, double half_height);
 

@@ -12,6 +12,6 @@ struct builtin_scene {
     void (*make)(struct mesh_builder *b, const double *values);
 };
 
-extern const struct builtin_scene builtin_box, builtin_ball, builtin_tree, builtin_butterfly, builtin_dragon;
+extern const struct builtin_scene builtin_box, builtin_ball, builtin_tree, builtin_butterfly, builtin_dragon, builtin_room;
 extern const struct builtin_scene builtin_hard_grazing, builtin_hard_contact, builtin_hard_fan, builtin_hard_depth,
     builtin_hard_degenerate, builtin_hard_twosided, builtin_hard_grid;

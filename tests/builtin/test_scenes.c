@@ -123,6 +123,7 @@ static void test_triangle_counts(void **state)
         {"dragon:triangles=47800", 47800, 0.001},
         {"dragon:triangles=2500000", 2500000, 1e-4},
         {"tree:leaves=0", 21970, 0.02},
+        {"room", 12 + 31000, 0.01},
         {"hard-08-depth:triangles=4096", 4096 + 2 + 24, 0},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
