@@ -272,7 +272,7 @@ static void refuse(const char *name, const char *expected)
 static void test_refusals(void **state)
 {
     (void)state;
-    refuse("", "known are box, ball, tree, butterfly, dragon, hard-01-grazing");
+    refuse("", "known are box, ball, tree, butterfly, dragon, room, hard-01-grazing");
     refuse("boxx", "hard-21-grid");
     refuse("dragon:", "not key=value");
     refuse("dragon:triangles", "not key=value");
