@@ -1,5 +1,5 @@
 /* The suites as data: a suite is a list of tables, a table says which scenes meet which algorithms and what is measured of each pair.
- * suites.c holds them and is the one place here that names shadow systems; what is not registered is left out by the plan. */
+ * suites/ holds them and is the one place here that names shadow systems; what is not registered is left out by the plan. */
 #pragma once
 
 #include <stddef.h>
