@@ -18,6 +18,7 @@ void comparison_finish(struct comparison *c)
         free(c->receiver[i]);
         free(c->masks[i].receivers);
         free(c->masks[i].lit);
+        list_reading_finish(&c->lists[i]);
     }
     free(c->ids);
     free(c->one_triangle);
@@ -92,6 +93,8 @@ static bool read_what_it_tells(struct stage *stage, const struct against *agains
         c->figure_count[i] = renderer_read_figures(stage->uploaded, i, c->figures[i]);
         if (against->kind == AGAINST_SAMPLES32 && !read_masks(stage, i, c, err))
             return false;
+        if (!list_reading_take(stage, i, &c->lists[i], err))
+            return false;
     }
     return true;
 }
@@ -137,6 +140,14 @@ struct truth {
     struct tracer *tracer;
 };
 
+static bool has_lists(const struct comparison *c)
+{
+    for (size_t i = 0; i < c->light_count; i++)
+        if (c->lists[i].given)
+            return true;
+    return false;
+}
+
 static bool truth_init(struct truth *t, const struct stage *stage, const struct against *against, struct comparison *c,
                        struct error *err)
 {
@@ -145,7 +156,8 @@ static bool truth_init(struct truth *t, const struct stage *stage, const struct 
         .stage = stage, .against = against, .view = view_from_camera(&stage->settings.camera, c->width, c->height)};
     if (!(t->reference = reference_create(stage->scene, threads, err)))
         return false;
-    return against->kind == AGAINST_SAMPLES32 || (t->tracer = tracer_create(stage->scene, threads, err));
+    bool traces = against->kind != AGAINST_SAMPLES32 || has_lists(c);
+    return !traces || (t->tracer = tracer_create(stage->scene, threads, err));
 }
 
 static void truth_finish(struct truth *t)
@@ -205,9 +217,9 @@ static bool trace_point(const struct truth *t, size_t light, const struct refere
 {
     bool keep = t->against->kind == AGAINST_POINT;
     float *scratch = keep ? NULL : malloc((size_t)c->width * c->height * sizeof *scratch);
-    bool good = (keep || scratch) &&
-                reference_point(t->reference, &t->view, &t->stage->settings.lights[light], c->ids, t->stage->pool, progress,
-                                keep ? c->truth[light] : scratch, c->receiver[light], counts);
+    bool good =
+        (keep || scratch) && reference_point(t->reference, &t->view, &t->stage->settings.lights[light], c->ids, t->stage->pool,
+                                             progress, keep ? c->truth[light] : scratch, c->receiver[light], counts);
     free(scratch);
     return good;
 }
@@ -265,15 +277,32 @@ static bool trace_lights(const struct truth *t, const struct reference_progress 
     return true;
 }
 
+static bool measure_lists(const struct truth *t, const struct stretch *whole, struct comparison *c, struct error *err)
+{
+    for (size_t i = 0; i < c->light_count; i++) {
+        double share = whole->share / (double)c->light_count;
+        struct stretch stretch = {whole->progress, whole->from + share * (double)i, share};
+        const struct reference_progress report = {report_stretch, &stretch};
+        if (!list_reading_measure(&c->lists[i], t->tracer, t->stage->pool, &report))
+            return error_set(err, ERROR_TRY_AGAIN, NULL, "counting the lists was stopped early, or memory is out for it");
+        list_reading_finish(&c->lists[i]);
+    }
+    return true;
+}
+
+static const double LISTS_SHARE = 0.3; /* of the time, where a system has lists */
+
 static bool compute_truth(const struct stage *stage, const struct against *against, const struct reference_progress *progress,
                           struct comparison *c, struct error *err)
 {
     struct truth t;
     bool good = truth_init(&t, stage, against, c, err);
-    double start = milliseconds();
-    good = good && trace_lights(&t, progress, c, err);
+    double start = milliseconds(), share = has_lists(c) ? 1 - LISTS_SHARE : 1;
+    struct stretch first = {progress, 0, share}, second = {progress, share, 1 - share};
+    const struct reference_progress report = {report_stretch, &first};
+    good = good && trace_lights(&t, &report, c, err);
     c->reference_ms = milliseconds() - start;
-    good = good && (against->kind == AGAINST_SAMPLES32 || find_one_triangle(&t, c, err));
+    good = good && measure_lists(&t, &second, c, err) && (against->kind == AGAINST_SAMPLES32 || find_one_triangle(&t, c, err));
     truth_finish(&t);
     return good;
 }

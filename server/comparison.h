@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "against.h"
+#include "list_reading.h"
 #include "reference/metrics.h"
 #include "reference/reference.h"
 #include "renderer.h"
@@ -25,6 +26,7 @@ struct comparison {
     int64_t wrong_samples[RENDERER_LIGHTS_MAX];     /* against samples32, of systems with masks; else -1 */
     struct shadow_figure figures[RENDERER_LIGHTS_MAX][SHADOW_FIGURES_MAX]; /* what the system tells of itself */
     size_t figure_count[RENDERER_LIGHTS_MAX];
+    struct list_reading lists[RENDERER_LIGHTS_MAX];
     unsigned converge_frames; /* how many the tested picture took ... */
     bool converged;           /* ... and whether that was enough */
     struct metrics light[RENDERER_LIGHTS_MAX];

@@ -4,6 +4,34 @@
 #include "output.h"
 #include "stage.h"
 
+/* Members of `object`; null where there are no lists. */
+static void add_identified(json_t *object, bool given, const struct identified *m)
+{
+    double texels = (double)m->texels, seen = (double)m->seen;
+    const struct {
+        const char *name;
+        double value;
+    } shares[] = {{"identified_fraction", m->fractions / texels},
+                  {"identified_pooled", (double)m->found / seen},
+                  {"identified_oracle5", m->oracle_fractions / texels},
+                  {"identified_oracle5_pooled", (double)m->found_by_oracle / seen}};
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++)
+        json_object_set_new(object, shares[i].name, given ? json_number(shares[i].value) : json_null());
+    json_object_set_new(object, "identified_texels", given ? json_integer((json_int_t)m->texels) : json_null());
+    json_object_set_new(object, "texels_over_4", given ? json_integer((json_int_t)m->texels_over_4) : json_null());
+}
+
+static void add_identified_total(json_t *object, const struct comparison *c)
+{
+    struct identified total = {0};
+    bool given = false;
+    for (size_t i = 0; i < c->light_count; i++) {
+        given |= c->lists[i].given;
+        identified_add(&total, &c->lists[i].result);
+    }
+    add_identified(object, given, &total);
+}
+
 static json_t *light_rows(const struct stage *stage, const struct comparison *c)
 {
     json_t *rows = json_array();
@@ -13,6 +41,7 @@ static json_t *light_rows(const struct stage *stage, const struct comparison *c)
         json_t *told = figures_told(c->figures[i], c->figure_count[i]);
         if (told)
             json_object_set_new(row, "figures", told);
+        add_identified(row, c->lists[i].given, &c->lists[i].result);
         json_object_set_new(row, "light", json_integer((json_int_t)i));
         json_object_set_new(row, "name", json_text(light->name));
         json_object_set_new(row, "kind", json_string(light_kind_names[light->kind]));
@@ -23,14 +52,12 @@ static json_t *light_rows(const struct stage *stage, const struct comparison *c)
 
 void figures_add_comparison(json_t *figures, const struct against *a, const struct stage *stage, const struct comparison *c)
 {
-    static const char *const of_lists[] = {"identified_fraction", "identified_pooled", "texels_over_4"};
     char against[300];
     against_format(a, against, sizeof against);
     json_t *errors = figures_errors(&c->total);
     json_object_update(figures, errors);
     json_decref(errors);
-    for (size_t i = 0; i < sizeof of_lists / sizeof of_lists[0]; i++)
-        json_object_set_new(figures, of_lists[i], json_null());
+    add_identified_total(figures, c);
     if (stage->settings.system->converged)
         json_object_set_new(figures, "convergence",
                             json_pack("{s:I, s:b}", "frames", (json_int_t)c->converge_frames, "converged", c->converged));

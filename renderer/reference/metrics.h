@@ -1,4 +1,4 @@
-/* How far a visibility buffer is from the reference's. Pure functions of pictures; definitions as in the README's table of figures. */
+/* How far a visibility buffer is from the reference's. Pure functions of pictures; definitions in docs/figures.md. */
 #pragma once
 
 #include <stdbool.h>

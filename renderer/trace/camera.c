@@ -79,7 +79,8 @@ static void write_depths(const struct light_job *job, const int valid[LANES], co
         if (!valid[i])
             continue;
         size_t at = (size_t)(y + i / PACKET) * job->view->width + x + i % PACKET;
-        job->depths[at] = ids[i] == SCENE_NONE ? INFINITY : (float)job->frame.start + packet->ray.tfar[i];
+        if (job->depths)
+            job->depths[at] = ids[i] == SCENE_NONE ? INFINITY : (float)job->frame.start + packet->ray.tfar[i];
         if (job->ids)
             job->ids[at] = ids[i];
     }
@@ -114,4 +115,18 @@ void tracer_light(const struct tracer *t, const struct view *view, const uint32_
     if (!job.tree)
         job.tree = t->all;
     job_pool_for(pool, tile_count(view), light_tile, &job);
+}
+
+void tracer_light_ids(const struct tracer *t, const struct view *views, size_t count, const uint32_t *casters,
+                      size_t caster_count, uint32_t *ids)
+{
+    RTCScene tree = tree_of_casters(t, casters, caster_count);
+    for (size_t i = 0; i < count; i++) {
+        struct light_job job = {
+            .tracer = t, .tree = tree ? tree : t->all, .view = &views[i], .frame = ray_frame_make(&views[i]), .ids = ids};
+        job.offsets = ray_offsets_pixels(&job.frame);
+        for (size_t tile = 0; tile < tile_count(&views[i]); tile++)
+            light_tile(&job, tile, 0);
+        ids += (size_t)views[i].width * views[i].height;
+    }
 }

@@ -82,6 +82,19 @@ static void print_row(const char *name, const struct metrics *m)
            (unsigned long long)m->acne, m->boundary.edge_shift_p95);
 }
 
+static void print_lists(const struct comparison *c)
+{
+    struct identified m = {0};
+    for (size_t i = 0; i < c->light_count; i++)
+        identified_add(&m, &c->lists[i].result);
+    if (m.texels > 0)
+        printf(
+            "lists hold %.4f of the triangles seen in a texel (all texels pooled: %.4f); the five most visible would be %.4f; %llu of "
+            "%llu texels see more than 4\n",
+            m.fractions / (double)m.texels, (double)m.found / (double)m.seen, m.oracle_fractions / (double)m.texels,
+            (unsigned long long)m.texels_over_4, (unsigned long long)m.texels);
+}
+
 static void print_table(const struct compare_options *o, const struct stage *stage, const struct comparison *c)
 {
     char against[300], tested[300];
@@ -98,6 +111,7 @@ static void print_table(const struct compare_options *o, const struct stage *sta
         print_row(name, &c->light[i]);
     }
     print_row(c->light_count == 1 ? light_kind_names[stage->settings.lights[0].kind] : "all", &c->total);
+    print_lists(c);
     printf("edge p95: 95 %% of the reference's shadow edge lies within that many 1/32 pixels of the tested one\n");
 }
 

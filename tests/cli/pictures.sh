@@ -86,7 +86,7 @@ two_lights --algorithm sm:size=128 --against point -o "$work/difference.png"
 cp "$work/out" "$work/compare.json"
 [ -s "$work/difference.png" ] || complain 'compare -o wrote no picture'
 stats_shape "$work/compare.json"
-json "$work/compare.json" "(($error_keys + [\"identified_fraction\",\"identified_pooled\",\"texels_over_4\",\"per_light\"]) - keys) == []" \
+json "$work/compare.json" "(($error_keys + [\"identified_fraction\",\"identified_pooled\",\"identified_oracle5\",\"identified_oracle5_pooled\",\"identified_texels\",\"texels_over_4\",\"per_light\"]) - keys) == []" \
     'compare: members'
 json "$work/compare.json" "(.per_light | length) == 2 and all(.per_light[]; ($error_keys - keys) == [])" 'compare: per_light'
 json "$work/compare.json" '.boundary | keys == ["edge_shift_max","edge_shift_mean","edge_shift_p95","pixels","rmse"]' 'compare: boundary'
