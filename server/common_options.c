@@ -1,5 +1,6 @@
 #include "common_options.h"
 
+#include <assert.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
@@ -83,6 +84,7 @@ static bool set_light(void *target, const char *value, struct error *err)
         return error_set(err, ERROR_USAGE, "light", "at most %d lights are accepted", RENDERER_LIGHTS_MAX);
     if (!light_parse(value, &o->lights[o->light_count], err))
         return false;
+    o->light_texts[o->light_count] = value;
     o->light_count++;
     return true;
 }
@@ -272,6 +274,22 @@ const struct option common_option_table[] = {
     {"log-level", "LEVEL", "error, warning, info or debug, on standard error (default warning)", set_log_level},
     {0},
 };
+
+static_assert(sizeof common_option_table / sizeof common_option_table[0] <= COMMON_OPTIONS_MAX,
+              "struct common_options has room for each");
+
+void common_options_note(struct common_options *options, const struct option *option, const char *value)
+{
+    options->given[option - common_option_table] = value ? value : "";
+}
+
+const char *common_options_given(const struct common_options *options, const char *name)
+{
+    for (size_t i = 0; common_option_table[i].name; i++)
+        if (strcmp(common_option_table[i].name, name) == 0)
+            return options->given[i];
+    return NULL;
+}
 
 unsigned threads_allowed(void)
 {

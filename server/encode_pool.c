@@ -86,7 +86,8 @@ static void encode(struct encode_job *job, struct jpeg_encoder *jpeg)
 {
     uint64_t started = clock_us();
     size_t size;
-    if (job->header.codec == GNMF_JPEG) {
+    /* Streams for speed; a picture on request as `gnomon render` writes it. */
+    if (job->header.codec == GNMF_JPEG && !job->request) {
         const uint8_t *bytes;
         if (jpeg_encode(jpeg, job->pixels, job->width, job->height, job->quality, &bytes, &size, &job->err))
             make_packet(job, bytes, size, started);

@@ -6,6 +6,8 @@
 #include "answer.h"
 #include "base/embed.h"
 #include "base/error.h"
+#include "listings.h"
+#include "methods/methods.h"
 #include "server.h"
 
 #define TEXT "text/plain; charset=utf-8"
@@ -58,6 +60,36 @@ static void answer_metrics(struct server *server, uint64_t id, const struct net_
     free(text);
 }
 
+/* {version, NAME: [...]}, as `gnomon list NAME --json` writes it. */
+static void answer_list(struct server *server, uint64_t id, const struct net_request *request, const char *name, json_t *list)
+{
+    json_t *root = json_pack("{s:s, s:o}", "version", GNOMON_VERSION, name, list);
+    char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
+    answer_text(server, id, request, text ? 200 : 503, "application/json", text ? text : "{}", text ? strlen(text) : 2);
+    free(text);
+    json_decref(root);
+}
+
+static void answer_scenes(struct server *server, uint64_t id, const struct net_request *request, const char *body, size_t size)
+{
+    (void)body, (void)size;
+    answer_list(server, id, request, "scenes", hello_scenes(server));
+}
+
+static void answer_algorithms(struct server *server, uint64_t id, const struct net_request *request, const char *body,
+                              size_t size)
+{
+    (void)body, (void)size;
+    answer_list(server, id, request, "algorithms", listing_algorithms());
+}
+
+/* The one that it renders on: a client has no choice of others. */
+static void answer_devices(struct server *server, uint64_t id, const struct net_request *request, const char *body, size_t size)
+{
+    (void)body, (void)size;
+    answer_list(server, id, request, "devices", listing_devices(render_loop_device(server->loop), 1));
+}
+
 static void answer_render(struct server *server, uint64_t id, const struct net_request *request, const char *body, size_t size)
 {
     dispatch_render(server, id, allowed_origin(server, request), body, size);
@@ -77,6 +109,9 @@ static const struct route routes[] = {
     {NET_GET, "/healthz", answer_health, true},
     {NET_GET, "/readyz", answer_ready, true},
     {NET_GET, "/metrics", answer_metrics, false},
+    {NET_GET, "/v1/scenes", answer_scenes, false},
+    {NET_GET, "/v1/algorithms", answer_algorithms, false},
+    {NET_GET, "/v1/devices", answer_devices, false},
     {NET_POST, "/v1/render", answer_render, false},
 };
 

@@ -75,17 +75,24 @@ struct parse_state {
     struct error *err;
 };
 
+static bool set(struct parse_state *state, const struct option *option, bool own, const char *value)
+{
+    if (!option->set(own ? state->own : state->common, value, state->err))
+        return false;
+    if (!own)
+        common_options_note(state->common, option, value);
+    return true;
+}
+
 /* `next` is the following word or NULL; *used says whether it was taken as the value. */
 static bool parse_option(struct parse_state *state, const char *word, const char *next, bool *used)
 {
     struct written_option w = take_apart(word);
     struct error *err = state->err;
-    void *target = state->own;
     const struct option *option = find_in(state->syntax->options, w.name, w.length);
-    if (!option && state->syntax->common) {
+    bool own = option;
+    if (!option && state->syntax->common)
         option = find_in(common_option_table, w.name, w.length);
-        target = state->common;
-    }
     if (!option || (option->name[1] == 0) != (word[1] != '-'))
         return unknown_option(state->syntax, word, err);
     if (!option->set)
@@ -95,7 +102,7 @@ static bool parse_option(struct parse_state *state, const char *word, const char
         if (w.value)
             return error_set(err, ERROR_USAGE, option->name, "%s takes no value, but was given '%.60s'", spell(option).text,
                              w.value);
-        return option->set(target, NULL, err);
+        return set(state, option, own, NULL);
     }
     const char *value = w.value;
     if (!value) {
@@ -105,7 +112,7 @@ static bool parse_option(struct parse_state *state, const char *word, const char
         value = next;
         *used = true;
     }
-    if (option->set(target, value, err))
+    if (set(state, option, own, value))
         return true;
     return error_prefix(err, "%s '%.60s'", spell(option).text, value);
 }

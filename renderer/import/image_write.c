@@ -68,6 +68,14 @@ static bool replace_file(const char *path, const uint8_t *data, size_t size, str
     return error_set(err, ERROR_IO, NULL, "%s cannot be written: %s", path, strerror(why));
 }
 
+bool image_write_bytes(const char *path, const uint8_t *data, size_t size, struct error *err)
+{
+    if (strcmp(path, "-") != 0)
+        return replace_file(path, data, size, err);
+    return write_all(STDOUT_FILENO, data, size) ||
+           error_set(err, ERROR_IO, NULL, "standard output cannot be written: %s", strerror(errno));
+}
+
 bool image_write(const char *path, enum image_format format, const void *pixels, uint32_t width, uint32_t height, int quality,
                  const struct image_metadata *metadata, size_t metadata_count, struct error *err)
 {
@@ -75,14 +83,7 @@ bool image_write(const char *path, enum image_format format, const void *pixels,
     size_t size = 0;
     if (!image_encode(format, pixels, width, height, quality, metadata, metadata_count, &data, &size, err))
         return false;
-    bool ok;
-    if (strcmp(path, "-") == 0) {
-        ok = write_all(STDOUT_FILENO, data, size);
-        if (!ok)
-            error_set(err, ERROR_IO, NULL, "standard output cannot be written: %s", strerror(errno));
-    } else {
-        ok = replace_file(path, data, size, err);
-    }
+    bool ok = image_write_bytes(path, data, size, err);
     free(data);
     return ok;
 }

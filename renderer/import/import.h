@@ -44,3 +44,6 @@ bool image_encode(enum image_format format, const void *pixels, uint32_t width, 
 /* image_encode() to a file: a temporary name `.NAME.tmp-PID` beside it, fsync, rename. "-" is standard output. */
 bool image_write(const char *path, enum image_format format, const void *pixels, uint32_t width, uint32_t height, int quality,
                  const struct image_metadata *metadata, size_t metadata_count, struct error *err);
+
+/* The same for a picture that is encoded already. */
+bool image_write_bytes(const char *path, const uint8_t *data, size_t size, struct error *err);

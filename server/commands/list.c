@@ -2,15 +2,16 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "builtin/builtin.h"
 #include "command.h"
+#include "listing_text.h"
 #include "listings.h"
-#include "numbers.h"
 #include "options.h"
 #include "output.h"
+#include "remote.h"
 
 struct list_options {
     const char *json; /* NULL: text */
+    struct remote remote;
 };
 
 static bool set_json(void *target, const char *value, struct error *err)
@@ -20,144 +21,110 @@ static bool set_json(void *target, const char *value, struct error *err)
     return true;
 }
 
+static bool set_server(void *target, const char *value, struct error *err)
+{
+    return remote_set_url(&((struct list_options *)target)->remote, value, err);
+}
+
+static bool set_token_file(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct list_options *)target)->remote.token_file = value;
+    return true;
+}
+
 static const struct option option_table[] = {
     {"json", "FILE", "write JSON; - is standard output", set_json},
-    {"server", "URL", "ask a running server", NULL},
+    {"server", "URL", "what the server at http://HOST:PORT/ offers, and the device that it renders on", set_server},
+    {"token-file", "FILE", REMOTE_OPTION_TOKEN, set_token_file},
     {0},
 };
 
 static const struct syntax syntax = {
     .command = "list",
-    .usage = "scenes|algorithms|devices [--json FILE]",
-    .summary = "Lists the built-in scenes, the shadow systems or the devices that can render.",
+    .usage = "scenes|algorithms|devices [--json FILE] [--server URL]",
+    .summary = "Lists the built-in scenes, the shadow systems or the devices that can render; or a server's.",
     .operand = "WHAT",
     .options = option_table,
     .examples = "  gnomon list algorithms\n"
-                "  gnomon list devices --json -\n",
+                "  gnomon list devices --json -\n"
+                "  gnomon list scenes --server http://127.0.0.1:8080/\n",
 };
 
-static void print_range(double min, double max, double initial) { printf("%.9g to %.9g, default %.9g", min, max, initial); }
-
-static void print_scenes(void)
+static json_t *local_devices(void)
 {
-    for (size_t i = 0; i < builtin_count; i++) {
-        const struct builtin_desc *b = builtin_list[i];
-        printf("builtin:%s\n    %s\n", b->name, b->help);
-        for (const struct builtin_param *p = b->params; p && p->name; p++) {
-            printf("    %-12s ", p->name);
-            print_range(p->min, p->max, p->initial);
-            printf("%s: %s\n", p->whole ? ", whole" : "", p->help);
-        }
+    struct device_info devices[DEVICES_MAX];
+    return listing_devices(devices, renderer_list_devices(devices, DEVICES_MAX));
+}
+
+static const struct kind {
+    const char *name, *path;
+    json_t *(*local)(void);
+    void (*print)(const json_t *listing, FILE *out);
+    const char *note; /* after the text, where this machine's is listed; may be NULL */
+} kinds[] = {
+    {"scenes", "/v1/scenes", listing_scenes, listing_print_scenes, "A path to a .gltf or .glb file is a scene too.\n"},
+    {"algorithms", "/v1/algorithms", listing_algorithms, listing_print_algorithms, NULL},
+    {"devices", "/v1/devices", local_devices, listing_print_devices, NULL},
+};
+
+static const struct kind *find_kind(const char *name, struct error *err)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+        if (!strcmp(kinds[i].name, name))
+            return &kinds[i];
+    error_set(err, ERROR_USAGE, "arguments", "cannot list '%.60s'; scenes, algorithms or devices are accepted", name);
+    return NULL;
+}
+
+static json_t *get(const struct kind *kind, const struct remote *remote, struct error *err)
+{
+    if (remote->url)
+        return remote_list(remote, kind->path, kind->name, err);
+    if (remote->token_file) {
+        error_set(err, ERROR_USAGE, "token-file", "--token-file is accepted only with --server");
+        return NULL;
     }
-    printf("A path to a .gltf or .glb file is a scene too.\n");
+    json_t *listing = kind->local();
+    if (!listing)
+        error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for a list");
+    return listing;
 }
 
-static void print_param(const struct param_desc *p)
-{
-    char names[160];
-    printf("    %-12s ", p->name);
-    if (p->kind == PARAM_CHOICE) {
-        name_list(p->choices, names, sizeof names);
-        printf("%s, default %s", names, p->choices[(size_t)p->initial]);
-    } else {
-        print_range(p->min, p->max, p->initial);
-        printf("%s%s%s", p->odd ? ", odd" : "", p->unit[0] ? " " : "", p->unit);
-    }
-    printf(": %s\n", p->help);
-}
-
-static void print_algorithms(void)
-{
-    for (size_t i = 0; i < shadow_system_count; i++) {
-        const struct shadow_system *s = shadow_systems[i];
-        printf("%s\n    %s: %s\n", s->name, s->title, s->help);
-        for (size_t p = 0; p < s->param_count; p++)
-            print_param(&s->params[p]);
-    }
-}
-
-static void print_devices(const struct device_info *devices, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        const struct device_info *d = &devices[i];
-        char index[16] = "-";
-        if (d->index >= 0)
-            snprintf(index, sizeof index, "%d", d->index);
-        printf("%-3s %-11s %-22s ", index, d->platform, d->node[0] ? d->node : "-");
-        if (d->why_not[0])
-            printf("not usable: %s\n", d->why_not);
-        else
-            printf("%s, %s%s\n", d->renderer, d->version, d->software ? " (software)" : "");
-    }
-}
-
-static int finish_text(void)
-{
-    struct error err = {0};
-    return output_flush(&err) ? 0 : command_fail(&err);
-}
-
-static int finish_json(const char *path, const char *name, json_t *listing)
-{
-    struct error err = {0};
-    json_t *root = json_pack("{s:s, s:o}", "version", GNOMON_VERSION, name, listing);
-    return output_json(path, root, &err) ? 0 : command_fail(&err);
-}
-
-static int list_scenes(const struct list_options *options)
+/* Takes no reference. */
+static bool write(const struct kind *kind, const struct list_options *options, json_t *listing, struct error *err)
 {
     if (options->json)
-        return finish_json(options->json, "scenes", listing_scenes());
-    print_scenes();
-    return finish_text();
-}
-
-static int list_algorithms(const struct list_options *options)
-{
-    if (options->json)
-        return finish_json(options->json, "algorithms", listing_algorithms());
-    print_algorithms();
-    return finish_text();
+        return output_json(options->json, json_pack("{s:s, s:O}", "version", GNOMON_VERSION, kind->name, listing), err);
+    kind->print(listing, stdout);
+    if (kind->note && !options->remote.url)
+        fputs(kind->note, stdout);
+    return output_flush(err);
 }
 
 /* The list is printed even when nothing in it works: it says why. */
-static int list_devices(const struct list_options *options)
+static bool check_usable(const struct kind *kind, const json_t *listing, struct error *err)
 {
-    struct device_info devices[DEVICES_MAX];
-    size_t count = renderer_list_devices(devices, DEVICES_MAX);
-    int code;
-    if (options->json) {
-        code = finish_json(options->json, "devices", listing_devices(devices, count));
-    } else {
-        print_devices(devices, count);
-        code = finish_text();
-    }
-    bool usable = false;
-    for (size_t i = 0; i < count; i++)
-        usable = usable || !devices[i].why_not[0];
-    if (code != 0 || usable)
-        return code;
-    struct error err = {0};
-    error_set(&err, ERROR_NO_DEVICE, "device", "none of %zu devices is usable; Mesa's software renderer (libegl-mesa0) would be",
-              count);
-    return command_fail(&err);
+    size_t i;
+    json_t *device;
+    bool usable = kind->local != local_devices;
+    json_array_foreach((json_t *)listing, i, device) usable = usable || json_is_true(json_object_get(device, "usable"));
+    return usable ||
+           error_set(err, ERROR_NO_DEVICE, "device",
+                     "none of %zu devices is usable; Mesa's software renderer (libegl-mesa0) would be", json_array_size(listing));
 }
 
 int command_list(int argc, char **argv)
 {
-    static const struct {
-        const char *name;
-        int (*run)(const struct list_options *options);
-    } kinds[] = {{"scenes", list_scenes}, {"algorithms", list_algorithms}, {"devices", list_devices}};
     struct list_options options = {0};
+    struct error err = {0};
     const char *what = NULL;
     int code = options_start(&syntax, argc, argv, &options, NULL, &what);
     if (code >= 0)
         return code;
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
-        if (!strcmp(kinds[i].name, what))
-            return kinds[i].run(&options);
-    struct error err = {0};
-    error_set(&err, ERROR_USAGE, "arguments", "cannot list '%.60s'; scenes, algorithms or devices are accepted", what);
-    return command_fail(&err);
+    const struct kind *kind = find_kind(what, &err);
+    json_t *listing = kind ? get(kind, &options.remote, &err) : NULL;
+    bool good = listing && write(kind, &options, listing, &err) && check_usable(kind, listing, &err);
+    json_decref(listing);
+    return good ? 0 : command_fail(&err);
 }

@@ -15,6 +15,7 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
+#include "remote_picture.h"
 #include "stage.h"
 
 struct render_options {
@@ -23,6 +24,7 @@ struct render_options {
     enum image_format format;
     const char *stats;    /* NULL: none */
     unsigned progressive; /* frames; 0: until converged */
+    struct remote remote;
 };
 
 static bool set_output(void *target, const char *value, struct error *err)
@@ -56,17 +58,30 @@ static bool set_progressive(void *target, const char *value, struct error *err)
     return true;
 }
 
+static bool set_server(void *target, const char *value, struct error *err)
+{
+    return remote_set_url(&((struct render_options *)target)->remote, value, err);
+}
+
+static bool set_token_file(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct render_options *)target)->remote.token_file = value;
+    return true;
+}
+
 static const struct option option_table[] = {
     {"o", "FILE", "the picture; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_output},
     {"stats", "FILE", "times, memory and sizes as JSON; - is standard output", set_stats},
-    {"server", "URL", "let a running server render", NULL},
     {"progressive", "N", "render N frames of the still view and write the last, or, with #### in FILE, each", set_progressive},
+    {"server", "URL", REMOTE_OPTION_URL, set_server},
+    {"token-file", "FILE", REMOTE_OPTION_TOKEN, set_token_file},
     {0},
 };
 
 static const struct syntax syntax = {
     .command = "render",
-    .usage = "SCENE -o FILE [options]",
+    .usage = "SCENE -o FILE [--server URL] [options]",
     .summary = "Renders a scene to a picture: sRGB 8 bit for PNG, JPEG and WebP, linear float before tone mapping for EXR.",
     .operand = "SCENE",
     .common = true,
@@ -76,10 +91,13 @@ static const struct syntax syntax = {
         "scene units, degrees, candela (point, spot) or lux (directional).\n\n"
         "Systems that refine their shadows from frame to frame are run until nothing changes any more (at most 512 frames; --stats says\n"
         "how many), then timed. With --progressive N exactly N frames are rendered, from the first on, and --stats has a row for each:\n"
-        "its time, memory and what the system tells of itself.\n",
+        "its time, memory and what the system tells of itself.\n\n"
+        "With --server, SCENE is a name as gnomon list scenes --server URL prints it, or builtin:NAME; the picture is the same, bit for bit.\n"
+        "Options that are not given are then the server's own.\n",
     .examples = "  gnomon render model.glb -o picture.png\n"
                 "  gnomon render builtin:dragon -o dragon.exr --size 1920x1080 --algorithm sm:size=2048 --stats -\n"
                 "  gnomon render model.glb -o 'refined.####.png' --progressive 30 --stats refined.json\n"
+                "  gnomon render builtin:ball -o ball.png --server http://127.0.0.1:8080/\n"
                 "  gnomon render model.glb -o top.jpg --eye 0,5,5 --target 0,0,0 --fov 35 \\\n"
                 "      --light 'spot position=2,4,1 direction=-2,-4,-1 intensity=500 inner=10 outer=30'\n",
 };
@@ -206,27 +224,52 @@ static bool check_outputs(const struct render_options *o, struct error *err)
         return error_set(err, ERROR_USAGE, "o", "render needs -o FILE; .png, .jpg, .webp and .exr are accepted");
     if (o->stats && !strcmp(o->output, "-") && !strcmp(o->stats, "-"))
         return error_set(err, ERROR_USAGE, "stats", "-o - and --stats - exclude each other: standard output carries one thing");
+    if (o->stats && o->remote.url)
+        return error_set(
+            err, ERROR_USAGE, "stats",
+            "--stats and --server exclude each other: times and memory are measured where it renders; leave one out");
+    if (o->progressive && o->remote.url)
+        return error_set(err, ERROR_USAGE, "progressive",
+                         "--progressive and --server exclude each other: a server answers with one picture; leave one out");
+    if (o->remote.token_file && !o->remote.url)
+        return error_set(err, ERROR_USAGE, "token-file", "--token-file is accepted only with --server");
     return output_check(o->output, err) && (!o->stats || output_check(o->stats, err));
+}
+
+static bool render_remote(const struct render_options *o, const char *scene, struct error *err)
+{
+    struct remote_answer answer;
+    if (!remote_picture(&o->remote, scene, &o->common, o->format, PICTURE_QUALITY, &answer, err))
+        return false;
+    bool good = image_write_bytes(o->output, answer.data, answer.size, err);
+    free(answer.data);
+    return good;
+}
+
+static bool render_here(const struct render_options *o, const char *scene, struct error *err)
+{
+    struct stage stage = {0};
+    double frame_ms = 0;
+    bool good = stage_init(&stage, scene, &o->common, err);
+    if (good) {
+        stage.settings.format = o->format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
+        good = o->progressive ? render_progress(o, &stage, err)
+                              : write_picture(o, &stage, &frame_ms, err) && write_stats(o, &stage, frame_ms, err);
+    }
+    stage_finish(&stage);
+    return good;
 }
 
 int command_render(int argc, char **argv)
 {
     struct render_options options = {0};
-    struct stage stage = {0};
     struct error err = {0};
     const char *scene = NULL;
-    double frame_ms = 0;
     common_options_init(&options.common);
     int code = options_start(&syntax, argc, argv, &options, &options.common, &scene);
     if (code >= 0)
         return code;
-    bool good = check_outputs(&options, &err) && stage_init(&stage, scene, &options.common, &err);
-    if (good) {
-        stage.settings.format = options.format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
-        good = options.progressive
-                   ? render_progress(&options, &stage, &err)
-                   : write_picture(&options, &stage, &frame_ms, &err) && write_stats(&options, &stage, frame_ms, &err);
-    }
-    stage_finish(&stage);
+    bool good = check_outputs(&options, &err) &&
+                (options.remote.url ? render_remote(&options, scene, &err) : render_here(&options, scene, &err));
     return good ? 0 : command_fail(&err);
 }

@@ -34,7 +34,7 @@ static json_t *capabilities(const struct server *server)
 }
 
 /* The server's own first, then its files, then what is built in. */
-static json_t *scenes(const struct server *server)
+json_t *hello_scenes(const struct server *server)
 {
     json_t *list = json_array();
     if (scene_is_builtin(server->first_scene))
@@ -61,7 +61,8 @@ json_t *hello_params(struct server *server, uint64_t session)
     snprintf(name, sizeof name, "%llx", (unsigned long long)session);
     return json_pack("{s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:o}", "version", GNOMON_VERSION, "protocol", PROTOCOL_VERSION,
                      "session", name, "role", s && s->role == ROLE_CONTROL ? "control" : "view", "capabilities",
-                     capabilities(server), "limits", limits(), "scenes", scenes(server), "algorithms", listing_algorithms());
+                     capabilities(server), "limits", limits(), "scenes", hello_scenes(server), "algorithms",
+                     listing_algorithms());
 }
 
 json_t *view_stats(struct server *server, const struct view_record *view, double seconds, uint64_t *frames, uint64_t *bytes)

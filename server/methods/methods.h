@@ -9,6 +9,8 @@ struct view_record;
 void view_publish(struct server *server, struct view_record *view, uint64_t input_seq, uint64_t input_time_us);
 void view_close(struct server *server, struct view_record *view);
 
+/* [{name, source, ...}]: what this server offers. */
+json_t *hello_scenes(const struct server *server);
 /* The notification that each session gets first. */
 json_t *hello_params(struct server *server, uint64_t session);
 /* view.stats of one view; NULL when it is gone. `seconds` since the counts in *frames and *dropped, which it replaces. */

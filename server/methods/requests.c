@@ -44,6 +44,8 @@ static bool apply_picture(const struct scene *scene, const struct params *p, str
         settings->tonemap = (enum tonemap)p->tonemap;
     if (is_given(given, PARAM_AA))
         settings->aa = (unsigned)p->aa;
+    if (is_given(given, PARAM_CAMERA_PASS))
+        settings->camera_pass = (enum camera_pass)p->camera_pass;
     return true;
 }
 

@@ -29,10 +29,10 @@ done
 
 # What the contract has and this version does not.
 bad 64 'not built yet' batch job.json
-bad 64 '--server is not built yet' render builtin:box -o "$work/a.png" --server http://127.0.0.1:1
+bad 74 'no answer from http://127.0.0.1:1' render builtin:box -o "$work/a.png" --server http://127.0.0.1:1
 bad 64 '--time is not built yet' render builtin:box -o "$work/a.png" --time 1
 bad 64 'not built yet' render builtin:box -o "$work/a.png" --show difference
-bad 64 '--server is not built yet' list scenes --server http://127.0.0.1:1
+bad 74 'no answer from http://127.0.0.1:1' list scenes --server http://127.0.0.1:1
 
 # Usage.
 bad 64 'needs an argument' render

@@ -77,6 +77,7 @@ FNR == 1 {
     only("^embree", " trace reference ", "ray tracing")
     only("^gmp", " reference ", "exact arithmetic")
     only("^(OpenImageIO/|tiny_gltf|nlohmann/)", " import ", "files")
+    only("^curl/", " server/remote.c ", "HTTP to another server")
     only("^(turbojpeg|jansson|libav)", " server ", "clients")
     only("^(sys/socket|netinet/|arpa/|netdb)", " server ", "the renderer has no sockets")
 }
