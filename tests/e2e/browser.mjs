@@ -1,13 +1,13 @@
 // The viewer in Chromium: what a person does with it. Leaves viewer-*.png in the build folder.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { openBrowser, state, still, until } from "./chromium.mjs";
+import { openBrowser, state, still, until, watchProblems } from "./chromium.mjs";
 import { PATIENCE_MS, binaryDir, serve, sleep } from "./support.mjs";
 
 let server = await serve("--scene", "builtin:box");
 const browser = await openBrowser();
 const { page } = browser;
-const problems = [];
+const problems = watchProblems(page);
 const control = (name, inner) => page.locator(`[data-control="${name}"] ${inner}`);
 const shot = (name) => page.screenshot({ path: join(binaryDir, `viewer-${name}.png`) });
 const changed = async (before, what) => {
@@ -29,8 +29,6 @@ const boxOf = async (locator) => {
 
 try {
   page.setDefaultTimeout(PATIENCE_MS);
-  page.on("pageerror", (error) => problems.push(String(error)));
-  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
   await page.goto(server.url);
 
   // Loads, sharp: as many pixels as the stage has.
@@ -75,7 +73,7 @@ try {
   await control("param-size", "input").press("Enter");
   await page.locator("#message.bad").waitFor();
   assert.match(await page.locator("#message").textContent(), /size/);
-  await page.locator("#message button").click();
+  await page.locator("#message .dismiss").click();
   assert.equal(await page.locator("#message").isHidden(), true);
   await page.locator("#picture").focus();
   await control("show", "select").selectOption("visibility");

@@ -1,16 +1,14 @@
 // The viewer on other screens and hands: sharp at two device pixels a CSS pixel, fingers, a mouse faster than the frames.
 import assert from "node:assert/strict";
-import { openBrowser, state, still, until } from "./chromium.mjs";
+import { openBrowser, state, still, until, watchProblems } from "./chromium.mjs";
 import { PATIENCE_MS, serve, sleep } from "./support.mjs";
 
 const server = await serve("--scene", "builtin:box");
 const browser = await openBrowser({ viewport: { width: 390, height: 700 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
 const { page, context } = browser;
-const problems = [];
+const problems = watchProblems(page);
 try {
   page.setDefaultTimeout(PATIENCE_MS);
-  page.on("pageerror", (error) => problems.push(String(error)));
-  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
   // A link holds scene, system and what is shown.
   await page.goto(`${server.url}#scene=builtin:box&show=normal`);
   await still(page, 0);

@@ -29,6 +29,14 @@ export async function openBrowser(options = {}) {
   };
 }
 
+// A list that gets what the page throws and what its console calls an error.
+export function watchProblems(page) {
+  const problems = [];
+  page.on("pageerror", (error) => problems.push(String(error)));
+  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
+  return problems;
+}
+
 // What a page is asked, again and again until it is so. page.waitForFunction() evaluates strings, which the page's own policy forbids.
 export async function until(page, what, condition, argument) {
   const end = Date.now() + PATIENCE_MS;

@@ -1,5 +1,5 @@
 // "sm:size=1024,slope=1": a name and parameters, as the wire and the command line write them. Scenes are written likewise.
-import type { Param } from "./protocol.js";
+import type { Algorithm, Param } from "./protocol.js";
 
 export type Values = Record<string, number | string>;
 export type Described = Pick<Param, "name" | "kind" | "default">;
@@ -23,4 +23,10 @@ export function readValues(params: Described[], given: Map<string, string>): Val
 export function joinSettings(name: string, params: Described[], values: Values): string {
   const pairs = params.filter((p) => values[p.name] !== p.default).map((p) => `${p.name}=${values[p.name]}`);
   return name + (pairs.length ? `:${pairs.join(",")}` : "");
+}
+
+export function withoutDefaults(algorithms: Pick<Algorithm, "name" | "params">[], text: string): string {
+  const { name, values } = splitSettings(text);
+  const params = algorithms.find((a) => a.name === name)?.params;
+  return params ? joinSettings(name, params, readValues(params, values)) : text;
 }

@@ -1,26 +1,29 @@
 // The page: one canvas, one view, its lights, a panel, figures.
+import { withoutDefaults } from "./algorithm.js";
 import { Charts } from "./charts.js";
 import {
-  type Client, type Frame, type Hello, type Light, type LightKind, type LightsResult, type LookAt, nowUs, type Progress, RpcError, type SceneInfo, type ViewInfo,
-  type ViewSettings,
+  type Client, type CompareSettings, FLAG_STILL, type Frame, type Hello, type Light, type LightKind, type LightsResult, type LookAt, nowUs, RpcError, type SceneChanged,
+  type SceneInfo, type ViewInfo, type ViewSettings,
 } from "./client.js";
 import { Connection } from "./connection.js";
 import { Figures } from "./figures.js";
 import { listen } from "./gestures.js";
 import { Handles, type Space } from "./handles.js";
 import { fillHelp } from "./help.js";
+import { Keeping } from "./keeping.js";
 import { type Held, listenKeys, type Pressed } from "./keys.js";
 import { asKind, newLight } from "./lights.js";
-import { readLink, writeLink } from "./link.js";
+import { Address, readLink } from "./link.js";
+import { Measuring } from "./measuring.js";
 import { Messages } from "./messages.js";
 import { Orbit } from "./orbit.js";
-import { Panel, type PanelEvents, type Snapshot } from "./panel.js";
+import { Panel, type PanelEvents } from "./panel.js";
 import { Picture } from "./picture.js";
-import { saveFrame } from "./save.js";
 import { Steering } from "./steering.js";
 import { ThemeSwitch } from "./theme.js";
 import { Timings } from "./timings.js";
 import { add, length, scale } from "./vectors.js";
+import { comparable, type Shown } from "./words.js";
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 
@@ -29,6 +32,7 @@ url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
 url.search = location.search; // ?token=
 url.hash = "";
 
+const STAND_OFF = 2; // of the scene's radius: where orthographic cameras stand to see all of it
 const KEY_TURN = 0.35; // picture heights a second
 const KEY_PAN = 0.5;
 const KEY_ZOOM = 2.2; // factor a second
@@ -46,9 +50,11 @@ class App {
   private ticking = false;
   private dragging = false; // a light: the handle leads, answers follow
   private refused: RpcError | undefined;
+  private opening: AbortController | undefined;
+  private readonly address = new Address();
   private readonly timings = new Timings();
   private readonly picture = new Picture(byId<HTMLCanvasElement>("picture"), () => this.resize());
-  private readonly messages = new Messages(byId("message"), byId("status"), byId("retry"));
+  private readonly messages = new Messages(byId("message"), byId("status"), byId("retry"), byId("token"));
   private readonly charts = new Charts(byId("frame-chart"), byId("pass-chart"), this.timings);
   private readonly figures = new Figures(this.timings);
   private readonly handles = new Handles(byId("handles"), {
@@ -62,6 +68,16 @@ class App {
       steerLight: (index, light, timeUs) => this.client!.steerLight(this.view!.view, index, light, timeUs),
     },
     () => this.orbit?.camera,
+  );
+  private readonly measuring = new Measuring(
+    byId("difference"),
+    { client: () => this.client, settings: () => this.toCompare(), error: (error) => this.messages.error(error) },
+    () => this.panel?.compare,
+  );
+  private readonly keeping = new Keeping(
+    { client: () => this.client, shown: () => this.shown(), against: () => this.panel?.compare.against ?? "point", link: () => this.address.write(this.wanted) },
+    this.messages,
+    byId("copy"),
   );
   private readonly connection: Connection;
 
@@ -82,7 +98,8 @@ class App {
         this.figures.stats = stats;
       },
       viewError: (error) => this.messages.error(new RpcError(error.code, error.message, error.data ?? undefined)),
-      notified: (method, params) => this.notified(method, params),
+      sceneChanged: (change) => void this.sceneChanged(change),
+      explain: explainRefusal,
       status: (status) => {
         this.messages.connection(status);
         if (status.state === "lost") this.view = undefined;
@@ -120,6 +137,9 @@ class App {
       { keys: ["t"], label: "t", help: "dark, light, or as the system has it", act: () => theme.next() },
       { keys: ["f"], label: "f", help: "full screen", act: () => this.toggleFullscreen() },
       { keys: ["c"], label: "c", help: "save what you see as a picture", act: () => this.saveView() },
+      { keys: ["k"], label: "k", help: "copy the command that makes this picture", act: () => void this.keeping.share("render") },
+      { keys: ["m"], label: "m", help: "measure the error of what you see, or give up measuring", act: () => this.panel?.compare.act() },
+      { keys: ["e"], label: "e", help: "difference picture, once measured", act: () => this.measuring.toggle() },
       { keys: ["?"], label: "?", help: "this help; Escape closes it", act: () => byId<HTMLDialogElement>("help").showModal() },
     ];
     listenKeys(held, pressed);
@@ -136,6 +156,11 @@ class App {
     click("show-help", () => byId<HTMLDialogElement>("help").showModal());
     click("close-help", () => byId<HTMLDialogElement>("help").close());
     click("retry", () => this.connection.retry());
+    byId("token").addEventListener("submit", (event) => {
+      event.preventDefault();
+      location.search = `?token=${encodeURIComponent(byId("token").querySelector("input")!.value.trim())}`;
+    });
+    window.addEventListener("hashchange", () => void this.openView(readLink()));
     window.addEventListener("online", () => this.connection.retry());
     document.addEventListener("visibilitychange", () => {
       if (this.view) this.steering.view({ pause: document.hidden }, nowUs());
@@ -156,23 +181,31 @@ class App {
     }
   }
 
+  // The newest wish wins: one that is under way is given up.
   private async openView(settings: ViewSettings): Promise<boolean> {
     const { client, view: old } = this;
     if (!client || !this.hello) return false;
+    this.opening?.abort();
+    const own = (this.opening = new AbortController());
     this.refused = undefined;
-    this.messages.note(settings.scene ? `Loading ${settings.scene} …` : "Loading …", true);
+    const what = settings.scene ? `Loading ${settings.scene} …` : "Loading …";
+    const progress = this.messages.follow(what, old ? () => own.abort() : undefined);
     try {
       this.steering.flush();
-      const opened = await client.openView({ ...settings, pause: document.hidden, ...this.size() });
+      const opened = await client.openView({ ...settings, pause: document.hidden, ...this.size() }, { signal: own.signal, progress });
+      if (own !== this.opening) {
+        client.notify("view.close", { view: opened.view });
+        return true;
+      }
       if (old) client.notify("view.close", { view: old.view });
       this.take(opened, settings);
       this.messages.clear();
       void this.describe(opened.scene);
       return true;
     } catch (error) {
-      if (this.client !== client) return false; // the connection went: that is said elsewhere
+      if (this.client !== client || own !== this.opening) return false; // the connection went, or another wish came: said elsewhere
       this.refused = error instanceof RpcError ? error : undefined;
-      this.messages.error(error);
+      this.messages.error(error, "Loading was cancelled");
       if (old) this.panel?.sync(old);
       return false;
     }
@@ -189,7 +222,8 @@ class App {
     if (fresh) this.panel = new Panel(byId("panel"), this.hello!, this.panelEvents(), opened);
     else this.panel?.sync(opened);
     this.showLights(opened.lights);
-    writeLink(this.wanted);
+    this.measuring.changed();
+    this.address.write(this.wanted);
   }
 
   private async describe(scene: string): Promise<void> {
@@ -198,6 +232,7 @@ class App {
       if (this.view?.scene !== scene) return;
       const { bounds } = info;
       if (bounds) this.space = { center: scale(add(bounds.min, bounds.max), 0.5), radius: length(add(bounds.max, bounds.min, -1)) / 2 || 1 };
+      this.orbit?.standOff(STAND_OFF * this.space.radius);
       this.panel?.describeScene(info, this.wanted.camera);
       this.showLights(this.lights);
     } catch (error) {
@@ -214,7 +249,13 @@ class App {
         this.sharpness = scale;
         this.resize();
       },
-      snapshot: (settings) => void this.save(settings),
+      snapshot: (settings) => void this.keeping.save(settings),
+      share: (what) => void this.keeping.share(what),
+      compare: {
+        run: (against) => void this.measuring.run(against),
+        cancel: () => this.measuring.cancel(),
+        show: (on) => (on ? this.measuring.show() : this.measuring.hide()),
+      },
       lights: {
         add: (kind) => void this.addLight(kind),
         change: (index, change) => void this.changeLight(index, change),
@@ -253,7 +294,8 @@ class App {
       if (moves) this.jump(now.camera, settings.camera!);
       this.panel?.sync(now);
       this.messages.clear();
-      writeLink(this.wanted);
+      this.measuring.changed();
+      this.address.write(this.wanted);
     } catch (error) {
       if (this.client !== client) return;
       this.messages.error(error);
@@ -263,6 +305,7 @@ class App {
 
   private jump(camera: LookAt, choice: LookAt | string | number): void {
     this.orbit = new Orbit(camera);
+    this.orbit.standOff(STAND_OFF * this.space.radius);
     this.steering.restart();
     this.steering.note(0);
     if (typeof choice !== "object") this.panel?.cameraIs(choice);
@@ -274,6 +317,8 @@ class App {
     this.wanted.camera = this.orbit.camera;
     this.steering.view({ camera: this.orbit.camera }, timeUs);
     this.panel?.cameraIs(undefined);
+    this.measuring.changed();
+    this.address.writeSoon(() => this.wanted);
     this.tickSoon();
   }
 
@@ -297,12 +342,20 @@ class App {
     this.timings.add(timing);
     this.picture.canvas.dispatchEvent(new CustomEvent("gnomon:frame", { detail: timing })); // for whoever measures
     if (!this.dragging) this.handles.place(this.picture.camera);
+    if (frame.flags & FLAG_STILL) this.measuring.settled();
   }
 
-  private notified(method: string, params: unknown): void {
-    if (method !== "$/progress") return;
-    const { stage, done } = params as Progress;
-    if (this.messages.waiting) this.messages.note(`${stage[0]?.toUpperCase()}${stage.slice(1)} …${done ? ` ${Math.round(100 * done)} %` : ""}`, true);
+  private async sceneChanged({ scene, reason, views }: SceneChanged): Promise<void> {
+    const { client, view } = this;
+    if (!client || !view || !views.includes(view.view)) return;
+    if (reason === "removed") return this.messages.note(`${scene} is gone from the server's disk; this view keeps it as it was`);
+    if (reason === "changed") {
+      if (await this.openView(this.wanted)) this.messages.note(`${scene} has changed on disk: this is the new one`);
+      return;
+    }
+    // Something else of it, told by a newer server: what it has now.
+    const { lights } = await client.request<ViewInfo>("view.set", { view: view.view });
+    if (this.view?.view === view.view && !this.dragging) this.showLights(lights);
   }
 
   private showLights(lights: Light[]): void {
@@ -314,6 +367,7 @@ class App {
   private dragLight(index: number, change: Partial<Light>, timeUs: number): void {
     if (!this.view) return;
     this.dragging = true;
+    this.measuring.changed();
     this.steering.light(index, change, timeUs);
     this.panel?.lights.refresh(index, this.lights[index]!);
   }
@@ -329,6 +383,8 @@ class App {
       if (this.view?.view !== view.view) return;
       this.wanted.lights = lights.map(withoutName);
       this.messages.clear();
+      this.measuring.changed();
+      this.address.writeSoon(() => this.wanted);
       if (!this.dragging) this.showLights(lights);
     } catch (error) {
       if (this.client !== client) return;
@@ -354,22 +410,27 @@ class App {
 
   private saveView(): void {
     const { width, height } = this.picture.canvas;
-    void this.save({ width, height, format: "png", aa: 4 });
+    void this.keeping.save({ width, height, format: "png", aa: 4 });
   }
 
-  private async save({ width, height, format, aa }: Snapshot): Promise<void> {
-    const { client, view, wanted } = this;
-    if (!client || !view) return;
-    this.messages.note(`Rendering ${width} × ${height} …`, true);
-    const { scene, algorithm, show, exposure, ambient, tonemap } = { ...wanted, algorithm: view.algorithm };
-    const chosen = { scene, algorithm, show, exposure, ambient, tonemap, camera: wanted.camera ?? this.orbit!.camera, lights: this.lights.map(withoutName) };
-    try {
-      const frame = await client.snapshot({ ...chosen, size: [Math.round(width), Math.round(height)], format, aa });
-      const name = saveFrame(frame, [scene ?? "view", algorithm]);
-      this.messages.note(`Saved ${name}: ${frame.width} × ${frame.height}, ${(frame.payload.length / 1024).toFixed(0)} KiB`);
-    } catch (error) {
-      this.messages.error(error);
-    }
+  // What the view shows, in full.
+  private shown(): Shown | undefined {
+    const { view, wanted } = this;
+    if (!view) return undefined;
+    const { scene, show, exposure, ambient, tonemap, aa } = view;
+    const algorithm = withoutDefaults(this.hello!.algorithms, view.algorithm);
+    const { width, height } = this.picture.canvas;
+    const size: [number, number] = [width, height];
+    const { name: _, ...own } = view.camera as LookAt & { name?: string };
+    return { scene, size, algorithm, show, exposure, ambient, tonemap, aa, camera: wanted.camera ?? own, ...(wanted.lights && { lights: wanted.lights }) };
+  }
+
+  private toCompare(): CompareSettings | undefined {
+    const shown = this.shown();
+    if (!shown) return undefined;
+    const [width, height] = shown.size;
+    const less = Math.min(1, Math.sqrt((this.hello?.limits["compare_pixels"] ?? Infinity) / (width * height)));
+    return { ...comparable(shown), size: [Math.max(1, Math.floor(width * less)), Math.max(1, Math.floor(height * less))] };
   }
 
   private toggleHandles(): void {
@@ -391,6 +452,14 @@ class App {
 // Names come from the scene; the wire takes none back.
 function withoutName({ name: _, ...light }: Light): Light {
   return light;
+}
+
+// A refused upgrade looks like a lost connection to a page; a plain request tells them apart.
+async function explainRefusal(): Promise<string> {
+  const { status } = await fetch(`${location.pathname}${location.search}`, { cache: "no-store" });
+  if (status === 401) return "the server takes no client without a token that it knows, and this address has none of them";
+  if (status === 403) return "the server does not answer to this address (see --allow-origin)";
+  return "";
 }
 
 new App();

@@ -1,6 +1,8 @@
 // The connection: requests, notifications, frames and their acknowledgement. Knows nothing of pages; scripts may import it.
 import { type Frame, parseFrame } from "./frame.js";
-import type { Hello, Light, LightsResult, SnapshotSettings, ViewInfo, ViewSettings, ViewStats } from "./protocol.js";
+import type {
+  CompareSettings, Comparison, Hello, Light, LightsResult, Progress, SceneChanged, SnapshotSettings, ViewInfo, ViewSettings, ViewStats,
+} from "./protocol.js";
 
 export * from "./frame.js";
 export type * from "./protocol.js";
@@ -21,6 +23,7 @@ export interface ClientEvents {
   frame?(frame: Frame): void | Promise<void>;
   stats?(stats: ViewStats): void;
   viewError?(error: { view: number; code: number; message: string; data?: { field?: string } | null }): void;
+  sceneChanged?(change: SceneChanged): void;
   // Any notification that has no callback of its own.
   notified?(method: string, params: unknown): void;
   closed?(code: number, reason: string): void;
@@ -30,20 +33,30 @@ export type SocketClass = new (url: string, protocols: string) => WebSocket;
 interface Waiting {
   resolve(value: unknown): void;
   reject(error: Error): void;
+  progress: ((progress: Progress) => void) | undefined;
 }
+
+export interface RequestOptions {
+  signal?: AbortSignal; // aborted: the server is asked to give up, and the request then fails with CANCELLED
+  progress?: (progress: Progress) => void;
+}
+
+// Given up by $/cancel: proto/README.md, Errors.
+export const CANCELLED = -32007;
 
 // Microseconds of this client's own clock, as sent with input and echoed by frames.
 export const nowUs = (): number => Math.round((performance.timeOrigin + performance.now()) * 1000);
 
 const SNAPSHOT_KIND = 1;
+const DIFFERENCE_KIND = 2;
 
 export class Client {
   private readonly socket: WebSocket;
   private readonly waiting = new Map<number, Waiting>();
   private lastId = 0;
   private lastInput = 0;
-  private lastSnapshot = 0;
-  private readonly snapshots = new Map<number, Frame>();
+  private lastPicture = 0;
+  private readonly pictures = new Map<number, Frame | undefined>(); // of requests under way
   private heardMs = Infinity;
   private gone = false;
 
@@ -78,15 +91,16 @@ export class Client {
     return Math.max(0, performance.now() - this.heardMs);
   }
 
-  request<T>(method: string, params: object = {}): Promise<T> {
+  request<T>(method: string, params: object = {}, { signal, progress }: RequestOptions = {}): Promise<T> {
     const id = ++this.lastId;
     return new Promise<T>((resolve, reject) => {
-      if (!this.open) {
-        reject(new RpcError(0, "not connected"));
+      if (!this.open || signal?.aborted) {
+        reject(signal?.aborted ? new RpcError(CANCELLED, "given up") : new RpcError(0, "not connected"));
         return;
       }
-      this.waiting.set(id, { resolve: resolve as (value: unknown) => void, reject });
+      this.waiting.set(id, { resolve: resolve as (value: unknown) => void, reject, progress });
       this.socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+      signal?.addEventListener("abort", () => this.waiting.has(id) && this.notify("$/cancel", { id }), { once: true });
     });
   }
 
@@ -94,8 +108,8 @@ export class Client {
     if (this.open) this.socket.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
-  openView(settings: ViewSettings): Promise<ViewInfo> {
-    return this.request<ViewInfo>("view.open", { ...settings, ...this.input() });
+  openView(settings: ViewSettings, options: RequestOptions = {}): Promise<ViewInfo> {
+    return this.request<ViewInfo>("view.open", { ...settings, ...this.input() }, options);
   }
 
   setView(view: number, settings: ViewSettings): Promise<ViewInfo> {
@@ -131,13 +145,27 @@ export class Client {
   }
 
   // The picture comes before the answer.
-  async snapshot(settings: SnapshotSettings): Promise<Frame> {
-    const requestId = ++this.lastSnapshot;
-    await this.request("render.snapshot", { ...settings, request_id: requestId });
-    const frame = this.snapshots.get(requestId);
-    this.snapshots.delete(requestId);
+  async snapshot(settings: SnapshotSettings, options: RequestOptions = {}): Promise<Frame> {
+    const { frame } = await this.pictured("render.snapshot", settings, options);
     if (!frame) throw new RpcError(0, "the server answered without sending the picture");
     return frame;
+  }
+
+  // `frame` only where a difference picture was asked for.
+  async compare(settings: CompareSettings, options: RequestOptions = {}): Promise<{ figures: Comparison; frame: Frame | undefined }> {
+    const { result, frame } = await this.pictured<Comparison>("compare.run", settings, options);
+    return { figures: result, frame };
+  }
+
+  private async pictured<T>(method: string, params: object, options: RequestOptions): Promise<{ result: T; frame: Frame | undefined }> {
+    const requestId = ++this.lastPicture;
+    this.pictures.set(requestId, undefined);
+    try {
+      const result = await this.request<T>(method, { ...params, request_id: requestId }, options);
+      return { result, frame: this.pictures.get(requestId) };
+    } finally {
+      this.pictures.delete(requestId);
+    }
   }
 
   ack(frame: Frame): void {
@@ -162,11 +190,14 @@ export class Client {
       this.heardMs = performance.now();
       this.events.stats?.(message.params);
     } else if (message.method === "view.error") this.events.viewError?.(message.params);
+    else if (message.method === "$/progress") this.waiting.get(message.params.id)?.progress?.(message.params);
+    else if (message.method === "scene.changed") this.events.sceneChanged?.(message.params);
     else this.events.notified?.(message.method, message.params);
   }
 
   private async show(frame: Frame): Promise<void> {
-    if (frame.kind === SNAPSHOT_KIND && frame.requestId > 0 && frame.requestId <= this.lastSnapshot) this.snapshots.set(frame.requestId, frame);
+    const asked = frame.kind === SNAPSHOT_KIND || frame.kind === DIFFERENCE_KIND;
+    if (asked && this.pictures.has(frame.requestId)) this.pictures.set(frame.requestId, frame);
     try {
       await this.events.frame?.(frame);
     } finally {

@@ -1,10 +1,12 @@
 // A client that comes back: connects again after a loss, with a growing delay. Knows nothing of pages.
 import { Client, type ClientEvents, type SocketClass } from "./client.js";
 
-export type Status = { state: "connecting" } | { state: "open" } | { state: "lost"; code: number; reason: string; retryMs: number; attempts: number };
+export type Status = { state: "connecting" } | { state: "open" } | { state: "lost"; code: number; reason: string; retryMs: number; attempts: number; refused: string };
 
 export interface ConnectionEvents extends Omit<ClientEvents, "closed"> {
   status?(status: Status): void;
+  // Why a connection was closed before the server spoke, where that can be found out: "" if not. Browsers do not tell of a refused upgrade.
+  explain?(): Promise<string>;
 }
 
 const FIRST_MS = 250;
@@ -17,6 +19,7 @@ export class Connection {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private watch: ReturnType<typeof setInterval> | undefined;
   private ended = false;
+  private refused = ""; // what the last refusal was for, while nothing else is known
 
   constructor(
     private readonly url: string,
@@ -41,16 +44,18 @@ export class Connection {
     clearTimeout(this.timer);
     this.timer = undefined;
     this.events.status?.({ state: "connecting" });
+    let greeted = false;
     const client = new Client(
       this.url,
       {
         ...this.events,
         hello: (hello) => {
           this.attempts = 0;
+          greeted = true;
           this.events.status?.({ state: "open" });
           this.events.hello?.(hello);
         },
-        closed: (code, reason) => this.lose(code, reason),
+        closed: (code, reason) => this.lose(code, reason, greeted),
       },
       this.socketClass,
     );
@@ -60,13 +65,22 @@ export class Connection {
     }, 1000);
   }
 
-  private lose(code: number, reason: string): void {
+  private lose(code: number, reason: string, greeted: boolean): void {
     clearInterval(this.watch);
     this.client = undefined;
     if (this.ended) return;
     // The spread keeps a server's clients from coming back all at once.
     const retryMs = Math.round(Math.min(LONGEST_MS, FIRST_MS * 2 ** this.attempts++) * (0.8 + 0.4 * Math.random()));
     this.timer = setTimeout(() => this.connect(), retryMs);
-    this.events.status?.({ state: "lost", code, reason, retryMs, attempts: this.attempts });
+    if (greeted) this.refused = "";
+    const lost = { state: "lost", code, reason, retryMs, attempts: this.attempts } as const;
+    this.events.status?.({ ...lost, refused: this.refused });
+    if (!greeted) void this.explain(lost);
+  }
+
+  private async explain(lost: Omit<Extract<Status, { state: "lost" }>, "refused">): Promise<void> {
+    const { timer, refused } = this;
+    this.refused = (await this.events.explain?.().catch(() => "")) ?? "";
+    if (this.refused !== refused && this.timer === timer) this.events.status?.({ ...lost, refused: this.refused });
   }
 }

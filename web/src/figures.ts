@@ -11,8 +11,11 @@ const set = (id: string, text: string): void => {
   if (element.textContent !== text) element.textContent = text;
 };
 
+const short = (value: number): string => (Number.isInteger(value) ? value.toLocaleString("en") : value.toPrecision(3));
+
 export class Figures {
   stats: ViewStats | undefined;
+  private readonly list = document.getElementById("own-figures")!;
 
   constructor(private readonly timings: Timings) {
     setInterval(() => this.refresh(), REFRESH_MS);
@@ -42,5 +45,20 @@ export class Figures {
     set("rtt", ms(this.stats.rtt_ms));
     set("dropped", String(this.stats.dropped));
     set("shadow", `${(this.stats.shadow_bytes / 1048576).toFixed(1)} MiB`);
+    this.own(this.stats);
+  }
+
+  // What the system tells of itself, by its own names.
+  private own({ algorithm, figures }: ViewStats): void {
+    const told = Object.entries(figures ?? {}).filter((entry): entry is [string, number] => typeof entry[1] === "number");
+    const names = `${algorithm}:${told.map(([name]) => name).join()}`;
+    if (this.list.dataset["of"] !== names) {
+      this.list.dataset["of"] = names;
+      const title = `Of the first light, as ${algorithm} tells it`;
+      this.list.replaceChildren(...told.flatMap(([name]) => [
+        Object.assign(document.createElement("dt"), { textContent: name.replace(/_/g, " "), title }), document.createElement("dd"),
+      ]));
+    }
+    told.forEach(([, value], i) => (this.list.children[2 * i + 1]!.textContent = short(value)));
   }
 }

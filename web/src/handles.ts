@@ -28,6 +28,9 @@ const KEY_STEP = 0.02; // of the picture's height
 const EDGE = 14; // pixels from the border, for what lies outside
 const TOP_EDGE = 66; // under the tools
 
+// As fine as a hand can aim, and short in links and commands.
+const short = (a: Vec3): Vec3 => a.map((x) => Number(x.toPrecision(6))) as Vec3;
+
 const svg = <K extends keyof SVGElementTagNameMap>(tag: K): SVGElementTagNameMap[K] => document.createElementNS("http://www.w3.org/2000/svg", tag);
 
 export class Handles {
@@ -151,10 +154,10 @@ export class Handles {
   }
 
   private changeTo(light: Light, part: Part, to: Vec3): Partial<Light> | undefined {
-    if (light.kind !== "directional" && part === "place") return { position: to };
+    if (light.kind !== "directional" && part === "place") return { position: short(to) };
     const from = light.kind === "directional" ? to : (light.position ?? [0, 0, 0]);
     const ray = add(light.kind === "directional" ? this.space.center : to, from, -1);
-    return length(ray) > 1e-9 * this.space.radius ? { direction: unit(ray) } : undefined;
+    return length(ray) > 1e-9 * this.space.radius ? { direction: short(unit(ray)) } : undefined;
   }
 
   // From a spot to its aim, from a directional light to the scene's middle.

@@ -1,11 +1,12 @@
 // What the page says: one line about the connection, one for errors and notes.
-import { RpcError } from "./client.js";
+import { CANCELLED, type Progress, RpcError } from "./client.js";
 import type { Status } from "./connection.js";
 
 const NOTE_MS = 5000;
 
 export class Messages {
-  waiting = false;
+  private stop: (() => void) | undefined; // of what goes on now
+  private readonly cancel: HTMLButtonElement;
   private hide: ReturnType<typeof setTimeout> | undefined;
   private countdown: ReturnType<typeof setInterval> | undefined;
   private readonly text: HTMLElement;
@@ -15,29 +16,44 @@ export class Messages {
     private readonly message: HTMLElement,
     private readonly status: HTMLElement,
     private readonly retry: HTMLElement,
+    private readonly token: HTMLElement,
   ) {
     this.text = message.querySelector("span")!;
     this.field = message.querySelector("code")!;
-    message.querySelector("button")!.addEventListener("click", () => this.clear());
+    this.cancel = message.querySelector<HTMLButtonElement>("button.cancel")!;
+    this.cancel.addEventListener("click", () => this.stop?.());
+    message.querySelector("button.dismiss")!.addEventListener("click", () => this.clear());
   }
 
-  // A note that is kept stands for something that goes on.
-  note(text: string, keep = false): void {
+  note(text: string): void {
     this.show(text, "", false);
-    this.waiting = keep;
-    if (!keep) this.hide = setTimeout(() => this.clear(), NOTE_MS);
+    this.hide = setTimeout(() => this.clear(), NOTE_MS);
   }
 
-  // Stays until dismissed or until something works.
-  error(error: unknown): void {
+  // Something goes on: stays until the next word. With `stop` it can be given up.
+  busy(text: string, stop?: () => void): void {
+    this.show(text, "", false, stop);
+  }
+
+  // What goes on, and how far it is by what the server tells.
+  follow(what: string, stop?: () => void): (progress: Progress) => void {
+    this.busy(what, stop);
+    return ({ stage, done }) => this.busy(`${what} ${stage}${done ? ` ${Math.round(100 * done)} %` : ""}`, stop);
+  }
+
+  // Stays until dismissed or until something works. What was cancelled is no error where `cancelled` says so.
+  error(error: unknown, cancelled?: string): void {
+    if (cancelled && error instanceof RpcError && error.code === CANCELLED) {
+      this.note(cancelled);
+      return;
+    }
     const field = error instanceof RpcError ? (error.data?.field ?? "") : "";
-    this.waiting = false;
     this.show(error instanceof Error ? error.message : String(error), field, true);
   }
 
   clear(): void {
     clearTimeout(this.hide);
-    this.waiting = false;
+    this.stop = undefined;
     this.message.hidden = true;
   }
 
@@ -45,6 +61,7 @@ export class Messages {
     clearInterval(this.countdown);
     this.status.dataset["state"] = status.state;
     this.retry.hidden = status.state !== "lost";
+    if (status.state !== "connecting") this.token.hidden = !(status.state === "lost" && status.refused);
     if (status.state === "open") this.status.textContent = "Connected";
     else if (status.state === "connecting") this.status.textContent = "Connecting …";
     else this.lost(status);
@@ -52,17 +69,20 @@ export class Messages {
 
   private lost(status: Extract<Status, { state: "lost" }>): void {
     const why = status.reason || (status.code === 1006 ? "the server does not answer" : `closed with code ${status.code}`);
+    const what = status.refused ? `Refused: ${status.refused}` : `Connection lost: ${why}`;
     const end = performance.now() + status.retryMs;
     const say = (): void => {
       const seconds = Math.ceil(Math.max(0, end - performance.now()) / 1000);
-      this.status.textContent = `Connection lost: ${why}. Trying again in ${seconds} s.`;
+      this.status.textContent = `${what}. Trying again in ${seconds} s.`;
     };
     say();
     this.countdown = setInterval(say, 500);
   }
 
-  private show(text: string, field: string, bad: boolean): void {
+  private show(text: string, field: string, bad: boolean, stop?: () => void): void {
     clearTimeout(this.hide);
+    this.stop = stop;
+    this.cancel.hidden = !stop;
     this.text.textContent = text;
     this.field.textContent = field;
     this.field.hidden = field === "" || text.startsWith(field);

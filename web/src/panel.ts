@@ -1,6 +1,7 @@
 // The controls, made from what server.hello says there is: no scene and no shadow system is known here by name.
 import { type Controller, GUI } from "lil-gui";
 import { type Described, joinSettings, readValues, splitSettings, type Values } from "./algorithm.js";
+import { type CompareEvents, ComparePanel } from "./compare_panel.js";
 import { addParam, describe } from "./controls.js";
 import { type LightEvents, LightPanel } from "./light_panel.js";
 import type { Algorithm, Hello, SceneInfo, SceneName, ViewInfo, ViewSettings } from "./protocol.js";
@@ -11,14 +12,19 @@ export interface PanelEvents {
   set(settings: ViewSettings): void;
   sharpness(scale: number): void;
   snapshot(settings: Snapshot): void;
+  share(what: Shared): void;
   lights: LightEvents;
+  compare: CompareEvents;
 }
+
+export type Shared = "link" | "render" | "compare" | "curl";
 
 export interface Snapshot {
   width: number;
   height: number;
   format: string;
   aa: number;
+  quality?: number;
 }
 
 const TONEMAPS = ["aces", "none"];
@@ -32,6 +38,7 @@ const withoutName = (scenes: SceneName[], text: string): SceneName | undefined =
 
 export class Panel {
   readonly lights: LightPanel;
+  readonly compare: ComparePanel;
   private readonly gui: GUI;
   private readonly shadows: GUI;
   private readonly sceneFolder: GUI;
@@ -55,12 +62,14 @@ export class Panel {
     this.choice = { scene: view.scene, camera: "0", algorithm: "", show: view.show };
     this.sceneFolder = this.gui.addFolder("Scene");
     this.shadows = this.gui.addFolder("Shadows");
+    this.compare = new ComparePanel(this.gui.addFolder("Error").close(), hello, events.compare);
     this.lights = new LightPanel(this.gui.addFolder("Lights"), events.lights);
     this.buildScenes(view.scene);
     this.buildShadows(view.algorithm);
     this.buildPicture(view);
     this.buildStream(view);
     this.buildSnapshot();
+    this.buildShare();
   }
 
   // After a scene was opened with `camera`; absent: its first.
@@ -204,12 +213,24 @@ export class Panel {
 
   private buildSnapshot(): void {
     const folder = this.gui.addFolder("Snapshot").close();
-    const model: Snapshot = { width: 1920, height: 1080, format: "png", aa: 4 };
+    const model: Snapshot = { width: 1920, height: 1080, format: "png", aa: 4, quality: 90 };
     const most = this.hello.limits["snapshot_side"] ?? 16384;
     for (const side of ["width", "height"] as const)
       describe(folder.add(model, side).min(1).step(1).name(`${side} (pixels)`), `snapshot-${side}`, `1 to ${most}; the picture is rendered anew at this size`);
-    describe(folder.add(model, "format", this.hello.capabilities.formats ?? ["png"]), "snapshot-format", "EXR is linear, before tone mapping");
+    describe(folder.add(model, "format", this.hello.capabilities.formats), "snapshot-format", "EXR is linear, before tone mapping");
+    describe(folder.add(model, "quality", 1, 100, 1), "snapshot-quality", "Of JPEG and WebP, 1 to 100");
     describe(folder.add(model, "aa", SAMPLES).name("samples (a pixel)"), "snapshot-aa", "Antialiasing");
     describe(folder.add({ save: () => this.events.snapshot({ ...model }) }, "save").name("Save"), "snapshot-save", "Renders and downloads the picture");
+  }
+
+  private buildShare(): void {
+    const folder = this.gui.addFolder("Share").close();
+    const copies: [Shared, string, string][] = [
+      ["link", "Copy the address", "A link to this server with scene, camera, lights, system and what is shown"],
+      ["render", "Copy as gnomon render", "The command that makes this very picture (k)"],
+      ["compare", "Copy as gnomon compare", "The command that measures this view's error"],
+      ["curl", "Copy as curl", "The same picture over HTTP, from this server"],
+    ];
+    for (const [what, label, help] of copies) describe(folder.add({ copy: () => this.events.share(what) }, "copy").name(label), `share-${what}`, help);
   }
 }

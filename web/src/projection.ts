@@ -12,13 +12,15 @@ interface Axes {
   right: Vec3;
   up: Vec3;
   forward: Vec3;
-  extent: number; // height of the picture at depth 1
+  extent: (depth: number) => number; // height of what is seen there
 }
 
 function axes(camera: LookAt): Axes {
   const forward = unit(add(camera.target, camera.eye, -1));
   const right = unit(cross(forward, camera.up ?? [0, 1, 0]));
-  return { right, up: cross(right, forward), forward, extent: 2 * Math.tan(((camera.fov ?? 45) * Math.PI) / 360) };
+  const { height } = camera;
+  const slope = 2 * Math.tan(((camera.fov ?? 45) * Math.PI) / 360);
+  return { right, up: cross(right, forward), forward, extent: height === undefined ? (depth) => slope * depth : () => height };
 }
 
 // Undefined for what is not in front of the camera.
@@ -27,7 +29,7 @@ export function project(camera: LookAt, aspect: number, point: Vec3): Spot | und
   const ray = add(point, camera.eye, -1);
   const depth = dot(ray, forward);
   if (!(depth > 0)) return undefined;
-  return { x: 0.5 + dot(ray, right) / (depth * extent * aspect), y: 0.5 - dot(ray, up) / (depth * extent), depth };
+  return { x: 0.5 + dot(ray, right) / (extent(depth) * aspect), y: 0.5 - dot(ray, up) / extent(depth), depth };
 }
 
 const MARGIN = 0.1; // of the picture
@@ -47,15 +49,15 @@ export function moveInView(camera: LookAt, point: Vec3, dx: number, dy: number, 
   const { right, up, forward, extent } = axes(camera);
   const ray = add(point, camera.eye, -1);
   const depth = dot(ray, forward);
-  const far = add(camera.eye, ray, away);
-  return add(add(far, right, dx * extent * depth), up, -dy * extent * depth);
+  const far = camera.height === undefined ? add(camera.eye, ray, away) : add(point, forward, (away - 1) * depth);
+  return add(add(far, right, dx * extent(depth)), up, -dy * extent(depth));
 }
 
 function corners(camera: LookAt, aspect: number): Vec3[] {
   const { right, up, forward, extent } = axes(camera);
   const depth = length(add(camera.target, camera.eye, -1));
   const middle = add(camera.eye, forward, depth);
-  const half = (extent * depth) / 2;
+  const half = extent(depth) / 2;
   return ([[-1, 1], [1, 1], [1, -1], [-1, -1]] as const).map(([x, y]) => add(add(middle, right, x * half * aspect), up, y * half));
 }
 

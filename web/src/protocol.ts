@@ -12,6 +12,7 @@ export type SceneInfo = Omit<wire.SceneInfo, "lights"> & { lights: Light[] };
 export type SceneCamera = wire.CameraInfo;
 export type LightsResult = Omit<wire.Lights, "lights"> & { lights: Light[] };
 export type SnapshotSettings = Loose<Omit<wire.RenderSnapshotParams, "lights">> & { lights?: Light[] };
+export type CompareSettings = Loose<Omit<wire.CompareRunParams, "lights" | "request_id">> & { lights?: Light[] };
 export type ViewInfo = Loose<Omit<wire.ViewInfo, "lights">> & { lights: Light[] };
 
 // What a view takes when it is opened or changed, apart from its inputs.
