@@ -16,12 +16,30 @@ const struct builtin_desc *const builtin_list[] = {
     &builtin_dragon.desc,
     &builtin_room.desc,
     &builtin_hard_grazing.desc,
+    &builtin_hard_plane.desc,
+    &builtin_hard_sliver.desc,
     &builtin_hard_contact.desc,
+    &builtin_hard_noise.desc,
     &builtin_hard_fan.desc,
+    &builtin_hard_tjunction.desc,
     &builtin_hard_depth.desc,
+    &builtin_hard_thin.desc,
+    &builtin_hard_duplicate.desc,
     &builtin_hard_degenerate.desc,
+    &builtin_hard_behind.desc,
+    &builtin_hard_near.desc,
+    &builtin_hard_far.desc,
+    &builtin_hard_offset.desc,
+    &builtin_hard_scale.desc,
+    &builtin_hard_ratio.desc,
+    &builtin_hard_seams.desc,
+    &builtin_hard_cards.desc,
     &builtin_hard_twosided.desc,
     &builtin_hard_grid.desc,
+    &builtin_hard_million.desc,
+    &builtin_hard_facets.desc,
+    &builtin_hard_clipped.desc,
+    &builtin_hard_sheets.desc,
 };
 
 const size_t builtin_count = sizeof builtin_list / sizeof builtin_list[0];
@@ -43,15 +61,20 @@ static bool text_is(struct text t, const char *word)
 
 static const struct builtin_scene *find_scene(struct text name, struct error *err)
 {
-    char known[400] = "";
+    char known[200] = "";
+    size_t models = 0;
     for (size_t i = 0; i < builtin_count; i++) {
         if (text_is(name, builtin_list[i]->name))
             return (const struct builtin_scene *)builtin_list[i];
+        if (strncmp(builtin_list[i]->name, "hard-", 5) == 0)
+            continue;
         size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", i > 0 ? ", " : "", builtin_list[i]->name);
+        snprintf(known + used, sizeof known - used, "%s%s", models++ > 0 ? ", " : "", builtin_list[i]->name);
     }
-    error_set(err, ERROR_USAGE, "scene", "unknown built-in scene '%.*s'; known are %s", name.length > 60 ? 60 : name.length,
-              name.start, known);
+    error_set(
+        err, ERROR_USAGE, "scene",
+        "unknown built-in scene '%.*s'; known are %s and the hard cases hard-01-grazing to hard-25-sheets (gnomon list scenes)",
+        name.length > 60 ? 60 : name.length, name.start, known);
     return NULL;
 }
 

@@ -58,3 +58,79 @@ static void make_contact(struct mesh_builder *b, const double *values)
 
 const struct builtin_scene builtin_hard_contact = {
     {"hard-04-contact", "Boxes and a sheet standing on the floor in the same plane.", NULL}, make_contact};
+
+/* `p` turned by `angle` about the axis (1, 2, 3). */
+static struct dvec3 tilted(struct dvec3 p, double angle)
+{
+    const struct dvec3 axis = dvec3_normalize(dvec3(1, 2, 3));
+    double c = cos(angle), s = sin(angle);
+    struct dvec3 turned = dvec3_mad(dvec3_scale(p, c), dvec3_cross(axis, p), s);
+    return dvec3_mad(turned, axis, dvec3_dot(axis, p) * (1 - c));
+}
+
+/* What is to be seen: the boxes on the floor again, the whole scene turned about a slanted axis before its vertices were rounded to floats: the
+ * bottom faces and the floor's plane now differ by last bits.
+ * Right answer: the exact one for those very floats. Box and floor cut each other by some 1e-7, so at most single pixels along a foot may
+ * differ from hard-04; no lit seam, no detached shadow. */
+static void make_noise(struct mesh_builder *b, const double *values)
+{
+    make_contact(b, values);
+    if (b->failed)
+        return;
+    double angle = values[0] * PI / 180;
+    for (size_t i = 0; i < b->positions.count; i++) {
+        float *p = b->positions.data[i].v, *n = b->normals.data[i].v;
+        struct dvec3 turned = tilted(dvec3_from_float(p), angle), normal = tilted(dvec3_from_float(n), angle);
+        const double to[6] = {turned.x, turned.y, turned.z, normal.x, normal.y, normal.z};
+        for (int k = 0; k < 3; k++) {
+            p[k] = (float)to[k];
+            n[k] = (float)to[3 + k];
+        }
+    }
+    b->lights.data[0].position = tilted(b->lights.data[0].position, angle);
+    struct camera *camera = &b->cameras.data[0];
+    camera->eye = tilted(camera->eye, angle);
+    camera->right = tilted(camera->right, angle);
+    camera->up = tilted(camera->up, angle);
+    camera->back = tilted(camera->back, angle);
+}
+
+static const struct builtin_param noise_params[] = {
+    {"degrees", "by which the scene is turned", 0, 180, 37, false},
+    {NULL},
+};
+
+const struct builtin_scene builtin_hard_noise = {
+    {"hard-05-noise", "Boxes on the floor whose planes agree only up to last bits.", noise_params}, make_noise};
+
+/* What is to be seen: a corridor of frames, seen from inside the first, whose sides the camera's near plane cuts; a sheet that starts behind the
+ * eye and runs through the near plane into the picture.
+ * Right answer: nothing nearer than the near plane is seen, but all of it casts: the frame around the eye and the sheet's part behind it throw
+ * their shadows into the picture. */
+static void make_clipped(struct mesh_builder *b, const double *values)
+{
+    mesh_builder_ground(b, 24, 24, grey);
+    mesh_builder_begin(b, "frames", mesh_builder_material(b, "frames", (const float[]){0.75f, 0.4f, 0.25f}, 0.9f, false));
+    for (int i = 0; i < 4; i++) {
+        double z = 2.5 - 1.25 * i;
+        mesh_builder_box(b, dvec3(-0.8, 0, z), dvec3(0.15, 1.5, 0.4), 0);
+        mesh_builder_box(b, dvec3(0.8, 0, z), dvec3(0.15, 1.5, 0.4), 0);
+        mesh_builder_box(b, dvec3(0, 1.5, z), dvec3(1.75, 0.15, 0.4), 0);
+    }
+    mesh_builder_end(b);
+    mesh_builder_begin(b, "sheet", mesh_builder_material(b, "sheet", (const float[]){0.3f, 0.5f, 0.65f}, 0.9f, true));
+    mesh_builder_flat_quad(b, dvec3(-0.5, 0.3, 4.5), dvec3(0.1, 0.6, 4.5), dvec3(0.3, 0.4, 1), dvec3(-0.3, 0.2, 1));
+    mesh_builder_end(b);
+    mesh_builder_directional_light(b, dvec3_normalize(dvec3(-0.5, -1, -0.7)), 3);
+    mesh_builder_camera(b, dvec3(0, 0.9, 2.7), dvec3(0, 0.55, 0), 1.1);
+    if (!b->failed)
+        b->cameras.data[0].near = values[0];
+}
+
+static const struct builtin_param clipped_params[] = {
+    {"near", "the camera's near plane", 0.001, 1, 0.4, false},
+    {NULL},
+};
+
+const struct builtin_scene builtin_hard_clipped = {
+    {"hard-24-clipped", "Geometry cut by the camera's near plane.", clipped_params}, make_clipped};

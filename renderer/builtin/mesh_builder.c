@@ -10,6 +10,7 @@
 #define PI 3.14159265358979323846
 
 _Static_assert(sizeof(struct builder_float3) == sizeof(float[3]), "moved into the scene as float[3]");
+_Static_assert(sizeof(struct builder_float2) == sizeof(float[2]), "moved into the scene as float[2]");
 _Static_assert(sizeof(struct builder_float4) == sizeof(float[4]), "moved into the scene as float[4]");
 
 static struct builder_float3 to_float3(struct dvec3 p) { return (struct builder_float3){{(float)p.x, (float)p.y, (float)p.z}}; }
@@ -26,7 +27,12 @@ static void release(struct mesh_builder *b)
     array_finish(&b->indices);
     array_finish(&b->meshes);
     array_finish(&b->instances);
+    array_finish(&b->texcoords);
     array_finish(&b->materials);
+    array_finish(&b->textures);
+    for (size_t i = 0; i < b->images.count; i++)
+        free(b->images.data[i].rgba);
+    array_finish(&b->images);
     array_finish(&b->lights);
     array_finish(&b->cameras);
     *b = (struct mesh_builder){0};
@@ -39,6 +45,12 @@ static void move_arrays(struct scene *scene, struct mesh_builder *b)
     scene->vertex_count = b->positions.count;
     scene->colors = (float(*)[4])b->colors.data;
     scene->color_count = b->colors.count;
+    scene->texcoords = (float(*)[2])b->texcoords.data;
+    scene->texcoord_count = b->texcoords.count;
+    scene->textures = b->textures.data;
+    scene->texture_count = b->textures.count;
+    scene->images = b->images.data;
+    scene->image_count = b->images.count;
     scene->indices = b->indices.data;
     scene->index_count = b->indices.count;
     scene->meshes = b->meshes.data;
@@ -94,25 +106,55 @@ uint32_t mesh_builder_material(struct mesh_builder *b, const char *name, const f
     return (uint32_t)b->materials.count - 1;
 }
 
-static void begin(struct mesh_builder *b, const char *name, uint32_t material, bool colored)
+void mesh_builder_cut_out(struct mesh_builder *b, uint32_t material, uint32_t side, uint8_t *rgba)
+{
+    struct image image = {.width = side, .height = side, .rgba = rgba, .name = "cut-out"};
+    struct texture texture = {(uint32_t)b->images.count, WRAP_CLAMP_TO_EDGE, WRAP_CLAMP_TO_EDGE, true};
+    if (!rgba || b->failed || !array_push(&b->images, image)) {
+        free(rgba);
+        b->failed = true;
+        return;
+    }
+    b->materials.data[material].alpha_mode = ALPHA_MASK;
+    b->materials.data[material].base_color_texture.texture = (uint32_t)b->textures.count;
+    if (!array_push(&b->textures, texture))
+        b->failed = true;
+}
+
+static void begin(struct mesh_builder *b, const char *name, uint32_t material, bool colored, bool textured)
 {
     struct mesh m = {
         .first_vertex = (uint32_t)b->positions.count,
         .first_index = (uint32_t)b->indices.count,
-        .first_texcoord = {SCENE_NONE, SCENE_NONE},
+        .first_texcoord = {textured ? (uint32_t)b->texcoords.count : SCENE_NONE, SCENE_NONE},
         .first_color = colored ? (uint32_t)b->colors.count : SCENE_NONE,
         .material = material,
     };
     snprintf(m.name, sizeof m.name, "%s", name);
     b->colored = colored;
+    b->textured = textured;
     mesh_builder_color(b, 1, 1, 1);
     if (!array_push(&b->meshes, m))
         b->failed = true;
 }
 
-void mesh_builder_begin(struct mesh_builder *b, const char *name, uint32_t material) { begin(b, name, material, false); }
+void mesh_builder_begin(struct mesh_builder *b, const char *name, uint32_t material) { begin(b, name, material, false, false); }
 
-void mesh_builder_begin_colored(struct mesh_builder *b, const char *name, uint32_t material) { begin(b, name, material, true); }
+void mesh_builder_begin_colored(struct mesh_builder *b, const char *name, uint32_t material)
+{
+    begin(b, name, material, true, false);
+}
+
+void mesh_builder_begin_textured(struct mesh_builder *b, const char *name, uint32_t material)
+{
+    begin(b, name, material, false, true);
+}
+
+void mesh_builder_texcoord(struct mesh_builder *b, double u, double v)
+{
+    b->texcoord[0] = (float)u;
+    b->texcoord[1] = (float)v;
+}
 
 void mesh_builder_color(struct mesh_builder *b, double red, double green, double blue)
 {
@@ -148,8 +190,10 @@ uint32_t mesh_builder_vertex(struct mesh_builder *b, struct dvec3 position, stru
 {
     uint32_t number = mesh_builder_vertices(b);
     struct builder_float4 color = {{b->color[0], b->color[1], b->color[2], b->color[3]}};
+    struct builder_float2 texcoord = {{b->texcoord[0], b->texcoord[1]}};
     if (b->failed || b->positions.count >= UINT32_MAX - 1 || !array_push(&b->positions, to_float3(position)) ||
-        !array_push(&b->normals, to_float3(normal)) || (b->colored && !array_push(&b->colors, color)))
+        !array_push(&b->normals, to_float3(normal)) || (b->colored && !array_push(&b->colors, color)) ||
+        (b->textured && !array_push(&b->texcoords, texcoord)))
         b->failed = true;
     return number;
 }

@@ -17,6 +17,10 @@ struct builder_float3 {
     float v[3];
 };
 
+struct builder_float2 {
+    float v[2];
+};
+
 struct builder_float4 {
     float v[4];
 };
@@ -24,14 +28,19 @@ struct builder_float4 {
 struct mesh_builder {
     bool failed;
     bool colored;   /* the mesh being made has vertex colours */
+    bool textured;  /* the mesh being made has texture coordinates */
     float color[4]; /* of the vertices to come; linear */
+    float texcoord[2];
     ARRAY(struct builder_float3) positions;
     ARRAY(struct builder_float3) normals;
     ARRAY(struct builder_float4) colors;
+    ARRAY(struct builder_float2) texcoords;
     ARRAY(uint32_t) indices;
     ARRAY(struct mesh) meshes;
     ARRAY(struct instance) instances;
     ARRAY(struct material) materials;
+    ARRAY(struct texture) textures;
+    ARRAY(struct image) images;
     ARRAY(struct light) lights;
     ARRAY(struct camera) cameras;
 };
@@ -42,10 +51,17 @@ struct scene *mesh_builder_finish(struct mesh_builder *b, const char *name, stru
 /* The index of a new dielectric material. `rgb` linear, [0,1]. */
 uint32_t mesh_builder_material(struct mesh_builder *b, const char *name, const float rgb[3], float roughness, bool double_sided);
 
+/* Gives `material` a base colour texture, nearest texel, clamped, alpha MASK with cutoff 0.5. `rgba`: malloc'd, side x side x 4, becomes
+ * the builder's; NULL: memory ran out. */
+void mesh_builder_cut_out(struct mesh_builder *b, uint32_t material, uint32_t side, uint8_t *rgba);
+
 void mesh_builder_begin(struct mesh_builder *b, const char *name, uint32_t material);
 /* The same, with vertex colours that multiply the material's: set by mesh_builder_color(), white at first. */
 void mesh_builder_begin_colored(struct mesh_builder *b, const char *name, uint32_t material);
 void mesh_builder_color(struct mesh_builder *b, double red, double green, double blue);
+/* With texture coordinates, set by mesh_builder_texcoord() before each vertex. */
+void mesh_builder_begin_textured(struct mesh_builder *b, const char *name, uint32_t material);
+void mesh_builder_texcoord(struct mesh_builder *b, double u, double v);
 /* Vertices and triangles of the mesh being made. */
 uint32_t mesh_builder_vertices(const struct mesh_builder *b);
 uint32_t mesh_builder_triangles(const struct mesh_builder *b);
@@ -79,6 +95,11 @@ void mesh_builder_smooth(struct mesh_builder *b, uint32_t first);
 
 /* Moves the mesh being made so that its lowest vertex is at y = 0. */
 void mesh_builder_stand(struct mesh_builder *b);
+
+/* Everything placed so far: instances, lights and cameras, moved, then scaled about the world's origin. In doubles: vertices keep their bits.
+ * Scaling keeps what is seen as bright as it was. */
+void mesh_builder_move(struct mesh_builder *b, struct dvec3 by);
+void mesh_builder_scale(struct mesh_builder *b, double factor);
 
 /* A mesh of its own: `width` x `depth` about the origin at y = 0, two triangles. */
 void mesh_builder_ground(struct mesh_builder *b, double width, double depth, const float rgb[3]);
