@@ -314,7 +314,8 @@ static void check_error_shrinks(const struct shadow_system *system, struct set *
         last = now;
         shot_drop(&shot);
     }
-    if (!(last.misclassified < 0.6 * first.misclassified))
+    /* Who has next to nothing wrong at any size cannot improve: a point may lie on an edge to within rounding. */
+    if (last.misclassified > 2e-4 && !(last.misclassified < 0.6 * first.misclassified))
         fail_msg("%s, %s: %g misclassified at size 128 and no fewer than %g at 1024", system->name, what, first.misclassified,
                  last.misclassified);
 }

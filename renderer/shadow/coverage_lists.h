@@ -1,0 +1,26 @@
+/* Which triangles each texel's list holds: coverage detection, papers/coverage-li-2017, 3.1. A list costs no triangle storage: it is links to
+ * neighbouring texels, whose triangles they are.
+ *
+ * A list is made when a pixel first reads its texel, from the map alone: so it is the same whichever pixel asks first, texels that no
+ * visible pixel reads cost nothing, and a camera that moves adds lists and changes none. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "shadow/geometry_map.h"
+
+#define COVERAGE_NODES_MAX 16
+
+/* Texels whose triangles a list may link, relative: the texel itself, the eight around (the paper's); for lists of more than nine nodes the
+ * sixteen around those too. */
+enum { COVERAGE_POOL = 25, COVERAGE_RING = 9 };
+extern const int8_t coverage_pool[COVERAGE_POOL][2];
+
+/* A list: bit k links texel coverage_pool[k]; never 0. `at` is (x, y)'s index in the map. Makes it if need be; any thread. */
+uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, uint32_t *hint);
+
+/* The triangles of a list: distinct drawn ids, MAP_OFF_EDGE taken off; returns how many. */
+unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,
+                                 uint32_t out[COVERAGE_NODES_MAX]);

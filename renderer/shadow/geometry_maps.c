@@ -1,0 +1,279 @@
+#include "shadow/geometry_maps.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/job_pool.h"
+#include "draw/draw_scene.h"
+#include "gl/context.h"
+#include "passes/gbuffer.h"
+#include "scene/pixel.h"
+
+enum { ROWS = 8, COLUMNS = 64 }; /* picture rows a job; pixels of a row worked on at a time */
+
+bool geometry_maps_prepare(struct geometry_maps *g, const struct shadow_input *in, struct error *err)
+{
+    for (unsigned i = in->fit->map_count; i < g->count; i++)
+        geometry_map_finish(&g->maps[i]);
+    g->count = 0;
+    for (unsigned i = 0; i < in->fit->map_count; i++) {
+        if (!geometry_map_build(&g->maps[i], in->scene, &in->fit->maps[i], in->fit->casters, in->fit->caster_count, in->pool,
+                                err))
+            return false;
+        g->count = i + 1;
+        if (in->memory && geometry_maps_bytes(g) > in->memory)
+            return error_set(err, ERROR_TRY_AGAIN, "memory", "geometry maps of %u x %u take more than the %zu MiB allowed",
+                             in->fit->maps[i].width, in->fit->maps[i].width, in->memory >> 20);
+    }
+    return true;
+}
+
+void geometry_maps_finish(struct geometry_maps *g)
+{
+    for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
+        geometry_map_finish(&g->maps[i]);
+    free(g->visibility);
+    free(g->surfaces);
+    memset(g, 0, sizeof *g);
+}
+
+size_t geometry_maps_bytes(const struct geometry_maps *g)
+{
+    size_t sum = g->pixel_room * sizeof *g->visibility + g->surface_room * sizeof *g->surfaces;
+    for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
+        sum += geometry_map_bytes(&g->maps[i]);
+    return sum;
+}
+
+enum geometry_verdict geometry_ask(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint)
+{
+    id &= MAP_ID;
+    if (id == p->id)
+        return GEOMETRY_OWN;
+    struct light_hit hit;
+    if (!light_triangle_solid_hit(&m->mesh, light_mesh_part(&m->mesh, id, hint), id, p->x, p->y, &hit))
+        return GEOMETRY_ELSEWHERE;
+    return geometry_before(m, hit.n, p->n) ? GEOMETRY_BEFORE : GEOMETRY_BEHIND;
+}
+
+/* A map as the pixel loop sees it: relative to the camera's eye, single precision. */
+struct placed_map {
+    const struct geometry_map *map;
+    float row[3][4];
+    float scale_x, scale_y, offset_x, offset_y, far;
+    bool orthographic;
+};
+
+struct resolve_job {
+    const struct shadow_input *in;
+    geometry_decide *decide;
+    void *state;
+    const uint32_t *ids;
+    const struct pixel *surfaces;
+    float *visibility;
+    struct placed_map maps[SHADOW_MAPS_MAX];
+    unsigned map_count;
+    uint32_t width, height;
+    /* The ray through the centre of pixel (0, 0), and its steps; relative. */
+    float origin[3], origin_dx[3], origin_dy[3], direction[3], direction_dx[3], direction_dy[3];
+    /* The light. */
+    enum light_kind kind;
+    float light[3]; /* position, relative; or the direction against the light's */
+    float axis[3], cosine, range2;
+};
+
+static void put(float out[3], struct dvec3 v)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+static struct placed_map place_map(const struct geometry_map *m, struct dvec3 camera_eye)
+{
+    const struct view *v = &m->mesh.view;
+    const struct dvec3 axes[3] = {v->right, v->up, v->forward};
+    struct placed_map p = {.map = m,
+                           .scale_x = (float)m->mesh.scale_x,
+                           .scale_y = (float)m->mesh.scale_y,
+                           .offset_x = (float)m->mesh.offset_x,
+                           .offset_y = (float)m->mesh.offset_y,
+                           .far = (float)v->far,
+                           .orthographic = v->orthographic};
+    for (int i = 0; i < 3; i++) {
+        put(p.row[i], axes[i]);
+        p.row[i][3] = (float)dvec3_dot(axes[i], dvec3_sub(camera_eye, v->eye));
+    }
+    return p;
+}
+
+static void aim(struct resolve_job *job, const struct view *view)
+{
+    struct dvec3 o, d, ox, dx, oy, dy;
+    double w = 1.0 / view->width, h = 1.0 / view->height;
+    view_ray(view, 0.5, 0.5, &o, &d);
+    view_ray(view, 0.5 + view->width, 0.5, &ox, &dx);
+    view_ray(view, 0.5, 0.5 + view->height, &oy, &dy);
+    put(job->origin, dvec3_sub(o, view->eye));
+    put(job->origin_dx, dvec3_scale(dvec3_sub(ox, o), w));
+    put(job->origin_dy, dvec3_scale(dvec3_sub(oy, o), h));
+    put(job->direction, d);
+    put(job->direction_dx, dvec3_scale(dvec3_sub(dx, d), w));
+    put(job->direction_dy, dvec3_scale(dvec3_sub(dy, d), h));
+}
+
+static void set_light(struct resolve_job *job, const struct light *light, struct dvec3 eye)
+{
+    job->kind = light->kind;
+    put(job->light, light->kind == LIGHT_DIRECTIONAL ? dvec3_neg(light->direction) : dvec3_sub(light->position, eye));
+    put(job->axis, light->direction);
+    job->cosine = (float)cos(light->outer);
+    job->range2 = light->kind == LIGHT_DIRECTIONAL || light->range == 0 ? INFINITY : (float)(light->range * light->range);
+}
+
+/* Receivers of a run of pixels, a member at a time. */
+struct run {
+    float x[COLUMNS], y[COLUMNS], z[COLUMNS]; /* relative */
+    int32_t receives[COLUMNS];
+};
+
+/* The same arithmetic as receiver_at() of shaders/receiver.glsl. */
+static inline __attribute__((always_inline)) void find_receivers(const struct resolve_job *job, uint32_t x0, uint32_t y,
+                                                                 uint32_t count, struct run *run)
+{
+    const struct pixel *surface = job->surfaces + (size_t)y * job->width + x0;
+    for (uint32_t i = 0; i < count; i++) {
+        float fx = (float)(x0 + i), fy = (float)y, depth = surface[i].depth, p[3], v[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = job->origin[k] + fx * job->origin_dx[k] + fy * job->origin_dy[k] +
+                   depth * (job->direction[k] + fx * job->direction_dx[k] + fy * job->direction_dy[k]);
+        for (int k = 0; k < 3; k++)
+            v[k] = job->kind == LIGHT_DIRECTIONAL ? job->light[k] : job->light[k] - p[k];
+        float a = (float)(int16_t)(surface[i].geometric & 0xffff) / 32767,
+              b = (float)((int32_t)surface[i].geometric >> 16) / 32767;
+        float c = 1 - fabsf(a) - fabsf(b), t = c < 0 ? -c : 0;
+        a += a >= 0 ? -t : t;
+        b += b >= 0 ? -t : t;
+        float facing = a * v[0] + b * v[1] + c * v[2], d2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        float along = -(v[0] * job->axis[0] + v[1] * job->axis[1] + v[2] * job->axis[2]);
+        bool spot = job->kind != LIGHT_SPOT || along >= job->cosine * sqrtf(d2);
+        run->x[i] = p[0];
+        run->y[i] = p[1];
+        run->z[i] = p[2];
+        run->receives[i] = (depth > 0) & (facing > 0) & (d2 <= job->range2) & spot;
+    }
+}
+
+/* False: outside the map. */
+static inline bool put_on_map(const struct placed_map *m, float x, float y, float z, struct map_point *out)
+{
+    float q[3];
+    for (int k = 0; k < 3; k++)
+        q[k] = m->row[k][0] * x + m->row[k][1] * y + m->row[k][2] * z + m->row[k][3];
+    float w = m->orthographic ? 1 : 1 / q[2], side = (float)m->map->size;
+    out->n = m->orthographic ? m->far - q[2] : w;
+    out->x = q[0] * w * m->scale_x + m->offset_x;
+    out->y = q[1] * w * m->scale_y + m->offset_y;
+    return w > 0 && out->x >= 0 && out->y >= 0 && out->x < side && out->y < side;
+}
+
+static bool is_lit(const struct resolve_job *job, float x, float y, float z, uint32_t id, uint32_t *hint)
+{
+    struct map_point p;
+    for (unsigned i = 0; i < job->map_count; i++) {
+        const struct geometry_map *m = job->maps[i].map;
+        if (!put_on_map(&job->maps[i], x, y, z, &p))
+            continue;
+        p.id = id;
+        p.at = geometry_map_at(m, (uint32_t)p.x, (uint32_t)p.y);
+        return p.at == SIZE_MAX || !(p.n < m->cells[p.at].nearest) || job->decide(job->state, m, &p, job->in->params, hint);
+    }
+    return true;
+}
+
+static void resolve_rows(void *context, size_t index, unsigned worker)
+{
+    (void)worker;
+    const struct resolve_job *job = context;
+    uint32_t end = ((uint32_t)index + 1) * ROWS < job->height ? ((uint32_t)index + 1) * ROWS : job->height, hint = 0;
+    for (uint32_t y = (uint32_t)index * ROWS; y < end; y++)
+        for (uint32_t x = 0; x < job->width; x += COLUMNS) {
+            uint32_t count = x + COLUMNS < job->width ? COLUMNS : job->width - x;
+            size_t first = (size_t)y * job->width + x;
+            struct run run;
+            find_receivers(job, x, y, count, &run);
+            for (uint32_t i = 0; i < count; i++)
+                job->visibility[first + i] =
+                    run.receives[i] && is_lit(job, run.x[i], run.y[i], run.z[i], job->ids[first + i], &hint) ? 1 : 0;
+        }
+}
+
+/* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */
+static void upload(const struct shadow_input *in, const float *visibility)
+{
+    GLint texture, layer;
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
+                                          &texture);
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
+                                          &layer);
+    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
+                        visibility);
+}
+
+static bool out_of_memory(struct error *err)
+{
+    return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture's visibility");
+}
+
+static const struct pixel *read_surfaces(struct geometry_maps *g, const struct shadow_input *in, struct error *err)
+{
+    struct gbuffer *b = in->gbuffer;
+    size_t pixels = (size_t)in->view->width * in->view->height;
+    if (b->traced && in->draw->plain)
+        return b->cpu_pixels;
+    if (g->surface_room < pixels) {
+        free(g->surfaces);
+        g->surfaces = malloc(pixels * sizeof *g->surfaces);
+        g->surface_room = g->surfaces ? pixels : 0;
+        if (!g->surfaces) {
+            out_of_memory(err);
+            return NULL;
+        }
+    }
+    glGetTextureImage(b->pixels.id, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, (GLsizei)(pixels * sizeof *g->surfaces), g->surfaces);
+    return gl_check(in->gl, err) ? g->surfaces : NULL;
+}
+
+bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *in, geometry_decide *decide, void *state,
+                           struct error *err)
+{
+    size_t pixels = (size_t)in->view->width * in->view->height;
+    if (g->pixel_room < pixels) {
+        free(g->visibility);
+        g->visibility = malloc(pixels * sizeof *g->visibility);
+        g->pixel_room = g->visibility ? pixels : 0;
+        if (!g->visibility)
+            return out_of_memory(err);
+    }
+    struct resolve_job job = {.in = in,
+                              .decide = decide,
+                              .state = state,
+                              .visibility = g->visibility,
+                              .map_count = g->count,
+                              .width = in->view->width,
+                              .height = in->view->height};
+    job.ids = gbuffer_read_ids(in->gbuffer, in->gl, err);
+    job.surfaces = job.ids ? read_surfaces(g, in, err) : NULL;
+    if (!job.surfaces)
+        return false;
+    for (unsigned i = 0; i < g->count; i++)
+        job.maps[i] = place_map(&g->maps[i], in->view->eye);
+    aim(&job, in->view);
+    set_light(&job, in->light, in->view->eye);
+    job_pool_for(in->pool, (job.height + ROWS - 1) / ROWS, resolve_rows, &job);
+    upload(in, g->visibility);
+    return gl_check(in->gl, err);
+}

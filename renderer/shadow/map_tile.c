@@ -1,0 +1,248 @@
+#include "shadow/map_tile.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "trace/hole.h"
+
+#define INLINE static inline __attribute__((always_inline))
+
+enum { TEXELS = MAP_TILE * MAP_TILE };
+
+/* Ranks: below 0 over the centre, minus the nearness there; else the distance from the centre in texels. The smaller is kept, of equals
+ * the lower id. */
+#define RANK_HOLE 0.5f /* covers the centre, with a hole there */
+#define RANK_WILD 1.0f /* touches, for triangles whose distance nobody works out */
+
+struct work {
+    float nearest[TEXELS], rank[TEXELS];
+    uint32_t id[TEXELS];
+} __attribute__((aligned(64)));
+
+/* A triangle over the tile. */
+struct facet {
+    struct conservative cover;
+    float n, nx, ny;   /* nearness at texel (x, y)'s centre: n + nx x + ny y */
+    float most, slack; /* the nearest corner's; by how much a texel may exceed its centre */
+    float inverse[3];  /* 1 / length of each edge */
+    uint32_t id;
+};
+
+INLINE bool set_facet(struct facet *f, const struct light_triangle *t, uint32_t id, float left, float top)
+{
+    float x[3], y[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = t->corner[k]->x - left;
+        y[k] = t->corner[k]->y - top;
+        n[k] = t->corner[k]->n;
+    }
+    if (!conservative_setup(&f->cover, x, y, MAP_TILE, MAP_TILE))
+        return false;
+    f->id = id;
+    f->most = fmaxf(fmaxf(n[0], n[1]), n[2]);
+    float scale = f->cover.turn / f->cover.area;
+    float u = n[1] - n[0], v = n[2] - n[0];
+    f->nx = (u * (y[2] - y[0]) - v * (y[1] - y[0])) * scale;
+    f->ny = (v * (x[1] - x[0]) - u * (x[2] - x[0])) * scale;
+    f->n = n[0] + f->nx * (0.5f - x[0]) + f->ny * (0.5f - y[0]);
+    /* What rounding makes of a slope is a fraction of it; the corners bound the rest. */
+    f->slack = (0.5f + CONSERVATIVE_MARGIN) * (fabsf(f->nx) + fabsf(f->ny));
+    f->slack += 0x1p-18f * (fabsf(f->nx) + fabsf(f->ny)) * (fabsf(x[0]) + fabsf(y[0]) + MAP_TILE);
+    if (!(f->slack < INFINITY)) { /* seen edge-on */
+        f->nx = f->ny = f->slack = 0;
+        f->n = f->most;
+    }
+    for (int k = 0; k < 3; k++)
+        f->inverse[k] = 1 / sqrtf(f->cover.a[k] * f->cover.a[k] + f->cover.b[k] * f->cover.b[k] + 1e-30f);
+    return true;
+}
+
+/* Macros, since vectors that functions return depend on the instruction set. */
+#define LANES_IF(mask, a, b) ((lanes_float)(((mask) & (lanes_int)(a)) | (~(mask) & (lanes_int)(b))))
+#define LANES_MAX(a, b)      LANES_IF((a) > (b), a, b)
+
+/* Takes lanes whose centre lies in a hole out of `covered`. */
+static void refuse_holes(const struct geometry_map *m, const struct light_part *part, uint32_t id, float left, float top,
+                         int32_t *covered)
+{
+    struct light_hit hit;
+    for (int i = 0; i < CONSERVATIVE_LANES; i++)
+        if (covered[i] && !light_triangle_solid_hit(&m->mesh, part, id, left + (float)i + 0.5f, top + 0.5f, &hit))
+            covered[i] = 0;
+}
+
+INLINE void mark_row(const struct facet *f, const struct geometry_map *m, const struct light_part *holes, float left, float top,
+                     int32_t x, int32_t y, struct work *w)
+{
+    const struct conservative *c = &f->cover;
+    lanes_float columns = LANES_COUNT + (float)x, edge[3];
+    for (int k = 0; k < 3; k++)
+        edge[k] = CONSERVATIVE_EDGE(c, k, columns, y);
+    lanes_int touched = CONSERVATIVE_TOUCHED(c, edge, columns);
+    lanes_int covered = (edge[0] >= 0) & (edge[1] >= 0) & (edge[2] >= 0);
+    lanes_float n = f->nx * columns + (f->ny * (float)y + f->n);
+    lanes_float away = -edge[0] * f->inverse[0], second = -edge[1] * f->inverse[1], third = -edge[2] * f->inverse[2];
+    away = LANES_MAX(away, second);
+    away = LANES_MAX(away, third);
+    if (holes) {
+        lanes_int before = covered & touched;
+        covered = before;
+        refuse_holes(m, holes, f->id, left + (float)x, top + (float)y, (int32_t *)&covered);
+        away = LANES_IF(before & ~covered, (lanes_float){} + RANK_HOLE, away);
+    }
+    lanes_float near = n + f->slack, most = (lanes_float){} + f->most, rank = LANES_IF(covered, -n, away);
+    near = LANES_IF(near < most, near, most);
+    size_t at = (size_t)y * MAP_TILE + (size_t)x;
+    lanes_float *nearest = (lanes_float *)&w->nearest[at], *ranks = (lanes_float *)&w->rank[at];
+    lanes_uint *ids = (lanes_uint *)&w->id[at];
+    *nearest = LANES_IF(touched & (near > *nearest), near, *nearest);
+    lanes_int better = touched & ((rank < *ranks) | ((rank == *ranks) & (lanes_int)(f->id < *ids)));
+    *ranks = LANES_IF(better, rank, *ranks);
+    *ids = (lanes_uint)LANES_IF(better, (lanes_float)((lanes_uint){} + f->id), (lanes_float)*ids);
+}
+
+INLINE void mark_facet(const struct facet *f, const struct geometry_map *m, const struct light_part *holes, float left, float top,
+                       struct work *w)
+{
+    for (int32_t y = f->cover.y0; y <= f->cover.y1; y++)
+        for (int32_t x = f->cover.x0 & ~(CONSERVATIVE_LANES - 1); x <= f->cover.x1; x += CONSERVATIVE_LANES)
+            mark_row(f, m, holes, left, top, x, y, w);
+}
+
+/* Thin in projection: may have no area at all, and casts nothing then. */
+static bool is_nothing(const struct geometry_map *m, const struct light_part *part, const struct light_triangle *t, float area,
+                       uint32_t id)
+{
+    float extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmaxf(extent, fmaxf(fabsf(t->corner[k]->x - t->corner[0]->x), fabsf(t->corner[k]->y - t->corner[0]->y)));
+    return area <= 1e-4f * extent * extent + 1e-6f && light_part_degenerate(m->mesh.scene, part, id);
+}
+
+INLINE void mark_triangles(const struct geometry_map *m, const uint32_t *triangles, size_t count, float left, float top,
+                           struct work *w)
+{
+    uint32_t hint = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t id = triangles[i];
+        const struct light_part *part = light_mesh_part(&m->mesh, id, &hint);
+        struct light_triangle t = light_part_triangle(part, id);
+        struct facet f;
+        if (!set_facet(&f, &t, id, left, top) || is_nothing(m, part, &t, f.cover.area, id))
+            continue;
+        if (part->holes)
+            mark_facet(&f, m, part, left, top, w);
+        else
+            mark_facet(&f, m, NULL, left, top, w);
+    }
+}
+
+/* A wild triangle's edges and nearness as functions of the map position, in double. Outside where an edge is negative. */
+struct wild_facet {
+    double edge[3][3]; /* e = [0] x + [1] y + [2] */
+    double n[3];       /* likewise; unless flat */
+    double most;
+    bool flat; /* seen edge-on: as near as `most` everywhere */
+};
+
+static void to_map(const struct light_mesh *m, struct dvec3 v, double out[3])
+{
+    out[0] = v.x / m->scale_x;
+    out[1] = v.y / m->scale_y;
+    out[2] = v.z - out[0] * m->offset_x - out[1] * m->offset_y;
+}
+
+/* Perspective only: an orthographic map holds all of its casters. */
+static void set_wild(struct wild_facet *f, const struct light_mesh *m, const struct dvec3 c[3])
+{
+    struct dvec3 normal = dvec3_cross(dvec3_sub(c[1], c[0]), dvec3_sub(c[2], c[0]));
+    double volume = dvec3_dot(normal, c[0]), sign = volume < 0 ? -1 : 1;
+    f->most = 0;
+    for (int k = 0; k < 3; k++) {
+        to_map(m, dvec3_scale(dvec3_cross(c[(k + 1) % 3], c[(k + 2) % 3]), sign), f->edge[k]);
+        f->most = fmax(f->most, c[k].z > 0 ? 1 / c[k].z : INFINITY);
+    }
+    f->flat = !(fabs(volume) > 1e-12 * dvec3_length(normal) * dvec3_length(c[0]));
+    if (!f->flat)
+        to_map(m, dvec3_scale(normal, 1 / volume), f->n);
+}
+
+static double highest(const double e[3], double x, double y)
+{
+    const double half = 0.5 + (double)CONSERVATIVE_MARGIN;
+    return e[0] * x + e[1] * y + e[2] + half * (fabs(e[0]) + fabs(e[1]));
+}
+
+static void mark_wild_texel(const struct geometry_map *m, const struct light_part *part, const struct wild_facet *f, uint32_t id,
+                            double x, double y, struct work *w, size_t at)
+{
+    for (int k = 0; k < 3; k++)
+        if (highest(f->edge[k], x, y) < 0)
+            return;
+    struct light_hit hit;
+    bool covered = light_triangle_solid_hit(&m->mesh, part, id, (float)x, (float)y, &hit);
+    float rank = covered ? -hit.n : RANK_WILD;
+    float near = f->flat ? (float)f->most : (float)(fmin(highest(f->n, x, y), f->most) * (1 + 0x1p-20));
+    w->nearest[at] = fmaxf(w->nearest[at], near);
+    if (rank < w->rank[at] || (rank == w->rank[at] && id < w->id[at])) {
+        w->rank[at] = rank;
+        w->id[at] = id;
+    }
+}
+
+static void mark_wild(const struct geometry_map *m, uint32_t id, float left, float top, struct work *w)
+{
+    uint32_t hint = 0;
+    const struct light_part *part = light_mesh_part(&m->mesh, id, &hint);
+    struct dvec3 c[3];
+    for (unsigned k = 0; k < 3; k++)
+        c[k] = light_part_corner(&m->mesh, part, id, k);
+    struct wild_facet f;
+    set_wild(&f, &m->mesh, c);
+    for (uint32_t i = 0; i < TEXELS; i++)
+        mark_wild_texel(m, part, &f, id, left + i % MAP_TILE + 0.5, top + i / MAP_TILE + 0.5, w, i);
+}
+
+INLINE void rasterize(const struct geometry_map *m, uint32_t tile_x, uint32_t tile_y, const uint32_t *triangles, size_t count,
+                      struct map_cell *cells)
+{
+    struct work w;
+    float left = (float)(tile_x * MAP_TILE), top = (float)(tile_y * MAP_TILE);
+    for (int i = 0; i < TEXELS; i++) {
+        w.nearest[i] = -INFINITY;
+        w.rank[i] = INFINITY;
+        w.id[i] = MAP_NONE;
+    }
+    mark_triangles(m, triangles, count, left, top, &w);
+    for (size_t i = 0; i < m->wild_count; i++)
+        mark_wild(m, m->wild[i], left, top, &w);
+    for (int i = 0; i < TEXELS; i++)
+        cells[i] = (struct map_cell){w.nearest[i], w.rank[i] >= 0 ? w.id[i] | MAP_OFF_EDGE : w.id[i]};
+}
+
+#ifdef __x86_64__
+/* The same arithmetic in wider vectors (no contraction), so the same bits. */
+__attribute__((target("avx2"))) static void rasterize_avx2(const struct geometry_map *m, uint32_t tile_x, uint32_t tile_y,
+                                                           const uint32_t *triangles, size_t count, struct map_cell *cells)
+{
+    rasterize(m, tile_x, tile_y, triangles, count, cells);
+}
+#endif
+
+static void rasterize_any(const struct geometry_map *m, uint32_t tile_x, uint32_t tile_y, const uint32_t *triangles, size_t count,
+                          struct map_cell *cells)
+{
+    rasterize(m, tile_x, tile_y, triangles, count, cells);
+}
+
+void map_tile_rasterize(const struct geometry_map *m, uint32_t tile_x, uint32_t tile_y, const uint32_t *triangles, size_t count,
+                        struct map_cell *cells)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) {
+        rasterize_avx2(m, tile_x, tile_y, triangles, count, cells);
+        return;
+    }
+#endif
+    rasterize_any(m, tile_x, tile_y, triangles, count, cells);
+}
