@@ -30,6 +30,9 @@ typedef uint32_t uvec4[4];
 #define UNIT_SHADOW_MAP 12    /* D32F array, a layer a map */
 #define UNIT_EMISSION 14      /* RGBA16F: emitted radiance, occlusion (-1: unlit) */
 #define UNIT_PICTURE 13       /* struct lighting's samples */
+#define UNIT_MAP_RANGES 15    /* RG32F array: shadow/map_ranges.h */
+#define UNIT_SOFT_TERM 16     /* R32UI: soft_term.glsl */
+#define UNIT_SOFT_RADIUS 17   /* R32UI: soft_term.glsl */
 
 #define NO_TRIANGLE 0xffffffffu
 #define INSTANCE_MIRRORED 1u
@@ -100,6 +103,13 @@ BLOCK(lights_block, 5)
     vec4 lights_cone[LIGHTS_MAX];      /* KHR_lights_punctual: angular scale, angular offset */
     vec4 picture;                      /* exposure factor, ambient radiance, samples a side (aa), unused */
     vec4 background;                   /* as shown */
+};
+
+/* What `soft` blurs by, and the picture's size. */
+BLOCK(soft_block, 6)
+{
+    vec4 soft_light; /* radius of the blur where an occluder is half way to the light, scene units; side of a block of ranges, texels; unused */
+    uvec4 soft_size; /* pixels; unused */
 };
 
 #endif

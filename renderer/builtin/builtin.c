@@ -15,6 +15,7 @@ const struct builtin_desc *const builtin_list[] = {
     &builtin_butterfly.desc,
     &builtin_dragon.desc,
     &builtin_room.desc,
+    &builtin_contact.desc,
     &builtin_hard_grazing.desc,
     &builtin_hard_plane.desc,
     &builtin_hard_sliver.desc,

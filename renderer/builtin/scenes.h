@@ -12,7 +12,8 @@ struct builtin_scene {
     void (*make)(struct mesh_builder *b, const double *values);
 };
 
-extern const struct builtin_scene builtin_box, builtin_ball, builtin_tree, builtin_butterfly, builtin_dragon, builtin_room;
+extern const struct builtin_scene builtin_box, builtin_ball, builtin_tree, builtin_butterfly, builtin_dragon, builtin_room,
+    builtin_contact;
 extern const struct builtin_scene builtin_hard_grazing, builtin_hard_plane, builtin_hard_sliver, builtin_hard_contact,
     builtin_hard_noise, builtin_hard_fan, builtin_hard_tjunction, builtin_hard_depth, builtin_hard_thin, builtin_hard_duplicate,
     builtin_hard_degenerate, builtin_hard_behind, builtin_hard_near, builtin_hard_far, builtin_hard_offset, builtin_hard_scale,

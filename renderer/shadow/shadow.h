@@ -94,6 +94,7 @@ enum shadow_flags {
     SHADOW_NO_SHADOWS = 4,  /* answers 1 for every receiver: full cover need not be dark */
     SHADOW_BINARY = 8,      /* values are 0 or 1 only */
     SHADOW_EXACT = 16,      /* promises the reference's own answer: error test demands 0 */
+    SHADOW_BRIGHTENS = 32,  /* full cover may leave some light, below one half */
 };
 
 struct shadow_system {
