@@ -110,10 +110,12 @@ static bool set_show(void *target, const char *value, struct error *err)
 {
     struct common_options *o = target;
     int index;
-    if (!strcmp(value, "difference"))
-        return error_set(err, ERROR_USAGE, "show", "is not built yet; gnomon compare -o FILE writes a difference picture");
-    if (!choose("show", show_names, value, &index, err))
-        return false;
+    o->difference = !strcmp(value, "difference");
+    if (o->difference)
+        return true;
+    index = name_index(show_names, value);
+    if (index < 0)
+        return error_set(err, ERROR_USAGE, "show", "shaded, visibility, depth, normal, id or difference are accepted");
     o->show = (enum show)index;
     return true;
 }
@@ -254,7 +256,8 @@ const struct option common_option_table[] = {
     {"light", "'KIND key=value ...'",
      "KIND point, spot or directional; repeat for more; replaces the scene's lights (keys below)", set_light},
     {"algorithm", "NAME[:key=value,...]", "shadow system and its parameters; gnomon list algorithms prints them", set_algorithm},
-    {"show", "WHAT", "shaded, visibility, depth, normal or id (default shaded); difference is not built yet", set_show},
+    {"show", "WHAT",
+     "shaded, visibility, depth, normal, id or difference (default shaded); difference: render only, against point", set_show},
     {"exposure", "EV|auto", "stops, or from the scene's lights and size alone (default auto)", set_exposure},
     {"ambient", "X", "white light from everywhere (default 0.03)", set_ambient},
     {"tonemap", "aces|none", "tone mapping of PNG, JPEG and WebP (default aces)", set_tonemap},

@@ -23,6 +23,7 @@ struct common_options {
     const struct shadow_system *system; /* NULL: the renderer's default */
     struct shadow_params params;
     enum show show;
+    bool difference; /* instead: how far visibility is from the reference's */
     bool exposure_auto;
     double exposure_ev;
     double ambient;

@@ -110,6 +110,7 @@ static bool render_tested(struct stage *stage, const struct against *against, st
         !read_visibility(stage, &settings, c->tested, err) || !read_what_it_tells(stage, against, c, err))
         return false;
     c->converged = info.converged;
+    c->frame_ms = info.frame_ms;
     if (!renderer_read_ids(stage->renderer, c->ids))
         return error_set(err, ERROR_TRY_AGAIN, NULL, "the triangle ids could not be read back from the device");
     return true;

@@ -32,6 +32,7 @@ struct comparison {
     struct metrics light[RENDERER_LIGHTS_MAX];
     struct metrics total;
     struct reference_counts counts; /* of the reference, over all lights */
+    double frame_ms;                /* of the tested picture */
     double reference_ms;            /* wall time of its rays, without its tree */
     void *picture;                  /* the tested picture, RGBA8 */
 };

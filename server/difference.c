@@ -2,8 +2,11 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 
+#include "against.h"
 #include "comparison.h"
+#include "stage.h"
 
 /* Orange and blue stay apart for every common kind of colour blindness. */
 static const float LEAK_COLOR[3] = {255, 130, 0};
@@ -54,4 +57,28 @@ void difference_numbers(const struct comparison *c, float *rgba32f)
         for (int i = 0; i < 4; i++)
             rgba32f[4 * p + i] = values[i];
     }
+}
+
+enum { PICTURE_QUALITY = 90 }; /* JPEG and WebP */
+
+bool difference_write(const struct comparison *c, const struct stage *stage, const struct against *against, const char *path,
+                      enum image_format format, struct error *err)
+{
+    struct render_settings settings = stage->settings;
+    char tested[300], truth[300];
+    settings.format = format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
+    void *pixels = stage_picture(&settings, err);
+    if (!pixels)
+        return false;
+    if (format == IMAGE_EXR)
+        difference_numbers(c, pixels);
+    else
+        difference_paint(c, pixels);
+    shadow_format(settings.system, &settings.params, tested, sizeof tested);
+    against_format(against, truth, sizeof truth);
+    const struct image_metadata metadata[] = {
+        {"Software", "gnomon " GNOMON_VERSION}, {"gnomon:algorithm", tested}, {"gnomon:against", truth}};
+    bool good = image_write(path, format, pixels, c->width, c->height, PICTURE_QUALITY, metadata, 3, err);
+    free(pixels);
+    return good;
 }

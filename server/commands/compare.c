@@ -115,28 +115,6 @@ static void print_table(const struct compare_options *o, const struct stage *sta
     printf("edge p95: 95 %% of the reference's shadow edge lies within that many 1/32 pixels of the tested one\n");
 }
 
-static bool write_picture(const struct compare_options *o, const struct stage *stage, const struct comparison *c,
-                          struct error *err)
-{
-    struct render_settings settings = stage->settings;
-    settings.format = o->format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
-    void *pixels = stage_picture(&settings, err);
-    if (!pixels)
-        return false;
-    if (o->format == IMAGE_EXR)
-        difference_numbers(c, pixels);
-    else
-        difference_paint(c, pixels);
-    char tested[300], against[300];
-    shadow_format(settings.system, &settings.params, tested, sizeof tested);
-    against_format(&o->against, against, sizeof against);
-    const struct image_metadata metadata[] = {
-        {"Software", "gnomon " GNOMON_VERSION}, {"gnomon:algorithm", tested}, {"gnomon:against", against}};
-    bool good = image_write(o->picture, o->format, pixels, c->width, c->height, 90, metadata, 3, err);
-    free(pixels);
-    return good;
-}
-
 static bool check_outputs(const struct compare_options *o, struct error *err)
 {
     if (!o->common.system)
@@ -166,7 +144,7 @@ static bool time_frames(const struct compare_options *o, struct stage *stage, js
 static bool write_results(const struct compare_options *o, const struct stage *stage, const struct comparison *c,
                           json_t **figures, struct error *err)
 {
-    if (o->picture && !write_picture(o, stage, c, err))
+    if (o->picture && !difference_write(c, stage, &o->against, o->picture, o->format, err))
         return false;
     if (o->json) {
         figures_add_comparison(*figures, &o->against, stage, c);

@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "command.h"
 #include "common_options.h"
+#include "comparison.h"
+#include "difference.h"
 #include "figures.h"
 #include "frame_name.h"
 #include "import/import.h"
@@ -93,7 +95,8 @@ static const struct syntax syntax = {
         "how many), then timed. With --progressive N exactly N frames are rendered, from the first on, and --stats has a row for each:\n"
         "its time, memory and what the system tells of itself.\n\n"
         "With --server, SCENE is a name as gnomon list scenes --server URL prints it, or builtin:NAME; the picture is the same, bit for bit.\n"
-        "Options that are not given are then the server's own.\n",
+        "Options that are not given are then the server's own.\n\n"
+        "--show difference paints the picture that gnomon compare --against point -o FILE writes.\n",
     .examples = "  gnomon render model.glb -o picture.png\n"
                 "  gnomon render builtin:dragon -o dragon.exr --size 1920x1080 --algorithm sm:size=2048 --stats -\n"
                 "  gnomon render model.glb -o 'refined.####.png' --progressive 30 --stats refined.json\n"
@@ -156,6 +159,28 @@ static bool write_picture(const struct render_options *o, struct stage *stage, d
     *frame_ms = info.frame_ms;
     good = good && write_stamped(o, stage, o->output, pixels, info.frame_ms, err);
     free(pixels);
+    return good;
+}
+
+static bool report_progress(void *context, double done)
+{
+    progress_set(context, done);
+    return true;
+}
+
+/* --show difference: what compare -o writes. */
+static bool write_difference(const struct render_options *o, struct stage *stage, double *frame_ms, struct error *err)
+{
+    const struct against point = {.kind = AGAINST_POINT};
+    struct comparison c = {0};
+    struct progress progress;
+    progress_init(&progress, "comparing", o->common.quiet);
+    const struct reference_progress report = {report_progress, &progress};
+    bool good = comparison_render(stage, &point, &c, err) && comparison_trace(stage, &point, &report, &c, err);
+    progress_finish(&progress);
+    good = good && difference_write(&c, stage, &point, o->output, o->format, err);
+    *frame_ms = c.frame_ms;
+    comparison_finish(&c);
     return good;
 }
 
@@ -233,6 +258,9 @@ static bool check_outputs(const struct render_options *o, struct error *err)
                          "--progressive and --server exclude each other: a server answers with one picture; leave one out");
     if (o->remote.token_file && !o->remote.url)
         return error_set(err, ERROR_USAGE, "token-file", "--token-file is accepted only with --server");
+    if (o->common.difference && (o->progressive || o->remote.url))
+        return error_set(err, ERROR_USAGE, "show", "--show difference and %s exclude each other: give one of them",
+                         o->progressive ? "--progressive" : "--server");
     return output_check(o->output, err) && (!o->stats || output_check(o->stats, err));
 }
 
@@ -253,8 +281,12 @@ static bool render_here(const struct render_options *o, const char *scene, struc
     bool good = stage_init(&stage, scene, &o->common, err);
     if (good) {
         stage.settings.format = o->format == IMAGE_EXR ? PIXELS_RGBA32F : PIXELS_RGBA8;
-        good = o->progressive ? render_progress(o, &stage, err)
-                              : write_picture(o, &stage, &frame_ms, err) && write_stats(o, &stage, frame_ms, err);
+        if (o->progressive)
+            good = render_progress(o, &stage, err);
+        else
+            good = (o->common.difference ? write_difference(o, &stage, &frame_ms, err)
+                                         : write_picture(o, &stage, &frame_ms, err)) &&
+                   write_stats(o, &stage, frame_ms, err);
     }
     stage_finish(&stage);
     return good;

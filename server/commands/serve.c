@@ -205,6 +205,10 @@ int command_serve(int argc, char **argv)
     int code = options_start(&serve_syntax, argc, argv, &options, &common, NULL);
     if (code >= 0)
         return code;
+    if (common.difference) {
+        error_set(&err, ERROR_USAGE, "show", "--show difference is for render; clients of a server call compare.run");
+        return command_fail(&err);
+    }
     struct stopper *stopper = start_stopper(&err);
     struct job_pool *pool = stopper ? job_pool_create(common.threads, &err) : NULL;
     bool ok = pool && serve(&options, stopper, &common, pool, &err);

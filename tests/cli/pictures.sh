@@ -62,6 +62,13 @@ json "$work/out" '.misclassified == 0 and .max_abs == 0 and .receivers > 1000 an
 good compare builtin:box --size 96x64 --algorithm reference --against arealight:rays=16,radius=0.5 --json -
 json "$work/out" '.max_abs > 0 and .rmse > 0 and .against == "arealight:radius=0.5,rays=16" and .wrong_samples == null' 'an area light blurs'
 
+# --show difference: compare's picture.
+# shellcheck disable=SC2086
+good render builtin:box -o "$work/shown.png" $small --show difference
+# shellcheck disable=SC2086
+good compare builtin:box -o "$work/compared.png" $small --against point
+cmp -s "$work/shown.png" "$work/compared.png" || complain 'render --show difference is not what compare -o writes'
+
 # Masks.
 good compare builtin:box --size 96x64 --algorithm reference:samples=32 --against samples32 --json -
 json "$work/out" '.wrong_samples == 0 and .per_light[0].wrong_samples == 0' 'the reference has no wrong sample'

@@ -31,7 +31,6 @@ done
 bad 64 'not built yet' batch job.json
 bad 74 'no answer from http://127.0.0.1:1' render builtin:box -o "$work/a.png" --server http://127.0.0.1:1
 bad 64 '--time is not built yet' render builtin:box -o "$work/a.png" --time 1
-bad 64 'not built yet' render builtin:box -o "$work/a.png" --show difference
 bad 74 'no answer from http://127.0.0.1:1' list scenes --server http://127.0.0.1:1
 
 # Usage.
@@ -43,6 +42,8 @@ bad 64 'standard output carries one thing' render builtin:box -o - --stats -
 bad 64 'standard output carries one thing' compare builtin:box --algorithm none -o - --json -
 bad 64 '1 to 16384' render builtin:box -o "$work/a.png" --size 16385x1
 bad 64 'needs --algorithm' compare builtin:box
+bad 64 'exclude each other' render builtin:box -o "$work/a.png" --show difference --progressive 3
+bad 64 'difference' serve --listen 127.0.0.1:0 --show difference
 bad 64 '1 to 100000 frames' render builtin:box -o "$work/a.png" --progressive 0
 bad 64 '1 to 1048576 MiB' render builtin:box -o "$work/a.png" --memory 0
 bad 64 'algorithm' compare builtin:box --algorithm no_such_system
