@@ -108,6 +108,14 @@ try {
   now = await changed(now, "a light less");
   assert.equal(now.hash, before.hash, "as before it came");
 
+  // A light outside the picture is shown at its edge, and comes in when it is dragged.
+  const outside = page.locator('.handle.outside[data-light="0"]');
+  const edge = await boxOf(outside);
+  await drag(edge, { x: -150, y: 80 });
+  now = await changed(now, "the light that was outside moves");
+  const inside = await boxOf(page.locator('.handle.place[data-light="0"]'));
+  assert.ok(Math.hypot(inside.x - edge.x + 150, inside.y - edge.y - 80) < 3, `it stays under the hand: ${JSON.stringify([edge, inside])}`);
+
   // A picture to keep.
   const [download] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Escape").then(() => page.locator("#save").click())]);
   assert.match(download.suggestedFilename(), /^gnomon-box-sm.*\.png$/);

@@ -74,7 +74,7 @@ try {
   assert.ok(await page.locator(".compared").evaluate((table) => table.classList.contains("stale")), "the figures are of another view");
 
   // One that takes long is given up: no error, no new figures, and the next is served.
-  await control("compare-against", "select").selectOption({ label: "ray traced, 32 samples a pixel" });
+  await control("compare-against", "select").selectOption({ label: "ray traced, 32 samples" });
   await page.locator("#picture").focus();
   await page.keyboard.press("m");
   await until(page, "a way to cancel", () => /^Cancel/.test(document.querySelector('[data-control="compare-run"] button').textContent));

@@ -19,6 +19,7 @@ import { Messages } from "./messages.js";
 import { Orbit } from "./orbit.js";
 import { Panel, type PanelEvents } from "./panel.js";
 import { Picture } from "./picture.js";
+import { remember, remembered } from "./remember.js";
 import { Steering } from "./steering.js";
 import { ThemeSwitch } from "./theme.js";
 import { Timings } from "./timings.js";
@@ -36,6 +37,8 @@ const STAND_OFF = 2; // of the scene's radius: where orthographic cameras stand 
 const KEY_TURN = 0.35; // picture heights a second
 const KEY_PAN = 0.5;
 const KEY_ZOOM = 2.2; // factor a second
+const HINTED = "gnomon-hinted";
+const HINT_MS = 12000;
 const COMPLAINT_CODES = [-32602, -32000, -32001]; // what an old view asks for, and this server does not have
 
 class App {
@@ -173,12 +176,19 @@ class App {
     this.view = undefined;
     byId("version").textContent = hello.version;
     byId("device").textContent = hello.capabilities.device;
-    if (await this.openView(this.wanted)) return;
+    if (await this.openView(this.wanted)) return this.hint();
     // A server that was replaced may not know what the old one did.
     if (this.refused && COMPLAINT_CODES.includes(this.refused.code)) {
       const { refused } = this;
       if (await this.openView({})) this.messages.error(refused);
     }
+  }
+
+  // Once for each browser.
+  private hint(): void {
+    if (remembered(HINTED)) return;
+    remember(HINTED, "yes");
+    this.messages.note("Drag to look around; drag the numbered sun to move the light; m measures the shadows' error; ? for help", HINT_MS);
   }
 
   // The newest wish wins: one that is under way is given up.

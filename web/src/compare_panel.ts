@@ -11,7 +11,7 @@ export interface CompareEvents {
 }
 
 // The references that are no system of their own: REF in proto/README.md.
-const REFERENCES: Record<string, string> = { "ray traced, 1 ray a light": "point", "ray traced, 32 samples a pixel": "samples32", "ray traced, lights with a radius": "arealight" };
+const REFERENCES: Record<string, string> = { "ray traced, 1 ray": "point", "ray traced, 32 samples": "samples32", "ray traced, area lights": "arealight" };
 const MEASURE = "Measure";
 
 type Say = (value: number, figures: Comparison) => string;

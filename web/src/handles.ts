@@ -21,6 +21,7 @@ interface Handle {
   index: number;
   part: Part;
   button: HTMLButtonElement;
+  pulled: { x: number; y: number }; // from where it belongs, outside the picture, to where it is shown; pixels
 }
 
 const DIRECTIONAL_AT = 0.8; // of the scene's radius, at most
@@ -69,6 +70,7 @@ export class Handles {
       const outside = spot.x < 0 || spot.x > 1 || spot.y < 0 || spot.y > 1;
       const x = Math.min(width - EDGE, Math.max(EDGE, spot.x * width));
       const y = Math.min(height - EDGE, Math.max(outside ? TOP_EDGE : EDGE, spot.y * height));
+      handle.pulled = outside ? { x: x - spot.x * width, y: y - spot.y * height } : { x: 0, y: 0 };
       handle.button.classList.toggle("outside", outside);
       handle.button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     }
@@ -91,7 +93,7 @@ export class Handles {
     button.title = `${what}: drag to move, with Shift away and nearer; arrow keys do the same${part === "place" ? ", Delete removes it" : ""}`;
     button.setAttribute("aria-label", button.title);
     button.dataset["light"] = String(index);
-    const handle = { index, part, button };
+    const handle: Handle = { index, part, button, pulled: { x: 0, y: 0 } };
     this.listen(handle);
     return handle;
   }
@@ -106,9 +108,12 @@ export class Handles {
     });
     listenMoves(button, (event) => {
       if (!last) return;
-      const dx = (event.clientX - last.x) / this.root.clientHeight, dy = (event.clientY - last.y) / this.root.clientHeight;
+      // One from outside comes in: it stays under the hand.
+      const pulled = event.shiftKey ? { x: 0, y: 0 } : handle.pulled;
+      const moved = event.clientX !== last.x || event.clientY !== last.y;
+      const dx = (event.clientX - last.x + pulled.x) / this.root.clientHeight, dy = (event.clientY - last.y + pulled.y) / this.root.clientHeight;
       last = { x: event.clientX, y: event.clientY };
-      if (dx || dy) this.drag(handle, dx, dy, event.shiftKey, eventUs(event));
+      if (moved) this.drag(handle, dx, dy, event.shiftKey, eventUs(event));
     });
     const lift = (): void => {
       if (last) this.events.end(handle.index);

@@ -25,9 +25,9 @@ export class Messages {
     message.querySelector("button.dismiss")!.addEventListener("click", () => this.clear());
   }
 
-  note(text: string): void {
+  note(text: string, forMs = NOTE_MS): void {
     this.show(text, "", false);
-    this.hide = setTimeout(() => this.clear(), NOTE_MS);
+    this.hide = setTimeout(() => this.clear(), forMs);
   }
 
   // Something goes on: stays until the next word. With `stop` it can be given up.

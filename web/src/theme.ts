@@ -1,16 +1,11 @@
 // Dark, light, or as the system has it; kept between visits.
+import { remember, remembered } from "./remember.js";
 
 const CHOICES = ["auto", "dark", "light"] as const;
 export type Theme = (typeof CHOICES)[number];
 const KEY = "gnomon-theme";
 
-const stored = (): Theme => {
-  try {
-    return CHOICES.find((c) => c === localStorage.getItem(KEY)) ?? "auto";
-  } catch {
-    return "auto"; // pages without storage
-  }
-};
+const stored = (): Theme => CHOICES.find((c) => c === remembered(KEY)) ?? "auto";
 
 export class ThemeSwitch {
   private theme = stored();
@@ -27,11 +22,7 @@ export class ThemeSwitch {
 
   next(): void {
     this.theme = CHOICES[(CHOICES.indexOf(this.theme) + 1) % CHOICES.length]!;
-    try {
-      localStorage.setItem(KEY, this.theme);
-    } catch {
-      // Then it lasts as long as the page.
-    }
+    remember(KEY, this.theme);
     this.apply();
   }
 
