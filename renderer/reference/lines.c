@@ -2,7 +2,7 @@
 
 #include <assert.h>
 
-#include "trace/hole.h"
+#include "reference/rules.h"
 
 /* A candidate, as the callbacks see it. */
 struct candidate {
@@ -73,16 +73,10 @@ int lines_apex_side(struct line_packet *p, const struct exact_apex *apex, const 
     return exact_apex_side(apex, corners);
 }
 
-/* Moeller and Trumbore's barycentrics (1997) in double: docs/truth.md, "Holes". */
 static bool is_solid(const struct candidate *c, struct dvec3 origin, struct dvec3 direction)
 {
-    if (!c->part->holes)
-        return true;
-    struct dvec3 e1 = dvec3_sub(c->corners[1], c->corners[0]), e2 = dvec3_sub(c->corners[2], c->corners[0]);
-    struct dvec3 p = dvec3_cross(direction, e2), s = dvec3_sub(origin, c->corners[0]), q = dvec3_cross(s, e1);
-    double determinant = dvec3_dot(e1, p);
-    double u = dvec3_dot(s, p) / determinant, v = dvec3_dot(direction, q) / determinant;
-    return hole_is_solid(c->part->reference->scene, c->part->instance, c->index, u, v);
+    return !c->part->holes ||
+           rule_is_solid(c->part->reference->scene, c->part->instance, c->index, c->corners, origin, direction);
 }
 
 /* Certain comparison of t with a limit: -1, 0, 1. */

@@ -1,17 +1,6 @@
 /* What makes a sample a receiver for a light: docs/truth.md, "Receivers". */
 #include "reference/lines.h"
-
-/* Cone and range, in double at the point in double. */
-static bool within_reach(const struct light *light, struct dvec3 point)
-{
-    if (light->kind == LIGHT_DIRECTIONAL)
-        return true;
-    struct dvec3 v = dvec3_sub(point, light->position);
-    double distance = dvec3_length(v);
-    if (light->range > 0 && distance > light->range)
-        return false;
-    return light->kind != LIGHT_SPOT || dvec3_dot(v, light->direction) >= cos(light->outer) * distance;
-}
+#include "reference/rules.h"
 
 static double largest(struct dvec3 v) { return fmax(fmax(fabs(v.x), fabs(v.y)), fabs(v.z)); }
 
@@ -54,5 +43,5 @@ bool lines_aim_at_light(struct line_packet *p, const struct light *light, unsign
     if (slope * side >= 0)
         return false;
     place_point(p, lane, &plane, corners);
-    return within_reach(light, p->point[lane]);
+    return rule_within_reach(light, p->point[lane]);
 }

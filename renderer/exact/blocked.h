@@ -1,0 +1,204 @@
+/* A tile's code: which samples of a receiver in one pixel are shadowed. */
+#pragma once
+
+#include "exact/receivers.h"
+
+/* G of four lines within a pixel: G(x, y) = g + x gx + y gy for x, y in [0, 1]; off by at most `error`. */
+struct pixel_lines {
+    lane4 g, gx, gy, error;
+};
+
+static inline __attribute__((always_inline)) void pixel_lines_make(struct pixel_lines *p, const struct occluder *o,
+                                                                   const struct receiver *r, double x, double y)
+{
+    lane4 v = o->lines.v + x * o->lines.vx + y * o->lines.vy;
+    double rv = r->v + x * r->vx + y * r->vy;
+    p->g = o->lines.fixed * rv - r->fixed * v;
+    p->gx = o->lines.fixed * r->vx - r->fixed * o->lines.vx;
+    p->gy = o->lines.fixed * r->vy - r->fixed * o->lines.vy;
+    p->error = LINE_ROUNDING * (o->lines.fixed_size * r->v_size + r->fixed_size * o->lines.v_size) + LINE_UNDERFLOW;
+}
+
+/* Single precision: rounding of three coefficients, two products and two sums of terms no larger than |g| + |gx| + |gy| is below
+ * 5 x 2^-24 of that; 2^-20 is used. */
+#define SINGLE_ROUNDING  0x1p-20
+#define SINGLE_UNDERFLOW 1e-37
+
+struct samples_sure {
+    uint32_t inside, outside;
+};
+
+/* Samples at which `count` lines are all certainly positive, and those at which some is certainly negative. */
+static inline __attribute__((always_inline)) struct samples_sure evaluate(const struct tile_scratch *s,
+                                                                          const struct pixel_lines *p, int count)
+{
+    struct samples_sure sure = {0, 0};
+    lane4 room =
+        (lane_abs(p->g) + lane_abs(p->gx) + lane_abs(p->gy)) * SINGLE_ROUNDING + p->error * (1 + 0x1p-20) + SINGLE_UNDERFLOW;
+    for (int i = 0; i < 32; i += WIDTH) {
+        unsigned in = ~0u, out = 0;
+        wide x = wide_load(s->x + i), y = wide_load(s->y + i);
+        for (int k = 0; k < count; k++) {
+            wide value = wide_add(wide_add(wide_all((float)p->g[k]), wide_mul(wide_all((float)p->gx[k]), x)),
+                                  wide_mul(wide_all((float)p->gy[k]), y));
+            in &= wide_above(value, wide_all((float)room[k]));
+            out |= wide_above(wide_all(-(float)room[k]), value);
+        }
+        const unsigned lanes = WIDTH == 32 ? ~0u : (1u << WIDTH % 32) - 1;
+        sure.inside |= (in & lanes) << i;
+        sure.outside |= (out & lanes) << i;
+    }
+    return sure;
+}
+
+/* The lines' signs in the whole pixel: 1 all positive, -1 one negative, 0 neither. `count_mask`: which lanes count. */
+static inline __attribute__((always_inline)) int whole_pixel(const struct pixel_lines *p, unsigned count_mask)
+{
+    const lane4 zero = {0, 0, 0, 0};
+    lane4 rise = lanes_max(p->gx, zero) + lanes_max(p->gy, zero), most = p->g + rise,
+          least = most - lane_abs(p->gx) - lane_abs(p->gy);
+    lane4 room = p->error + 0x1p-50 * (lane_abs(p->g) + lane_abs(p->gx) + lane_abs(p->gy)), under = -room;
+    if (lanes_above(&under, &most) & count_mask)
+        return -1;
+    return (lanes_above(&least, &room) & count_mask) == count_mask;
+}
+
+/* Sign in double of lines at one sample: 1 all positive, -1 one negative, 0 neither certain. */
+static inline int at_sample(const struct pixel_lines *p, double x, double y, unsigned count_mask)
+{
+    lane4 value = p->g + x * p->gx + y * p->gy;
+    lane4 room = p->error + 0x1p-50 * (lane_abs(p->g) + lane_abs(p->gx) + lane_abs(p->gy)), under = -room;
+    if (lanes_above(&under, &value) & count_mask)
+        return -1;
+    return (lanes_above(&value, &room) & count_mask) == count_mask;
+}
+
+/* A group of samples of one pixel with one receiver, while occluders are tried. */
+struct group {
+    struct tile_scratch *scratch;
+    const struct tile_job *job;
+    const struct receiver *receiver;
+    const struct light_box *box;
+    uint32_t x, y;
+    uint32_t open; /* samples not yet shadowed */
+    bool center;   /* one sample, the pixel's centre (bit 0), else view_samples32 */
+    bool certain;  /* the receiver's lines say where its points are */
+};
+
+static inline struct sample_ray group_ray(const struct group *g, unsigned sample)
+{
+    return g->center
+               ? sample_ray(g->job->view, g->x + 0.5, g->y + 0.5)
+               : sample_ray(g->job->view, g->x + (double)view_samples32[sample][0], g->y + (double)view_samples32[sample][1]);
+}
+
+/* Samples that neither single precision nor the mask's absence decides. */
+static inline void try_one_by_one(struct group *g, const struct occluder *o, const struct pixel_lines *p, uint32_t inside,
+                                  uint32_t unsure, bool lines_count)
+{
+    struct slow *slow = &g->scratch->slow;
+    bool holes = g->job->triangles->flags[o->id] & TRIANGLE_HOLES;
+    uint32_t id = g->receiver->id;
+    g->scratch->counts.undecided += (unsigned)__builtin_popcount(unsure);
+    for (uint32_t bits = unsure | (holes ? inside : 0); bits; bits &= bits - 1) {
+        unsigned i = (unsigned)__builtin_ctz(bits);
+        struct sample_ray ray = group_ray(g, i);
+        int sign = inside >> i & 1 ? 1
+                   : lines_count   ? at_sample(p, g->center ? 0.5 : (double)view_samples32[i][0],
+                                             g->center ? 0.5 : (double)view_samples32[i][1], 15)
+                                   : 0;
+        bool blocked = sign > 0   ? !holes || slow_is_solid(slow, &ray, id, o->id)
+                       : sign < 0 ? false
+                                  : slow_blocks(slow, &ray, id, o->id, o->side);
+        g->open &= ~((uint32_t)blocked << i);
+    }
+    if (!holes)
+        g->open &= ~inside;
+}
+
+static inline void group_try(struct group *g, uint32_t id)
+{
+    const struct occluder *o = occluder_get(g->scratch, g->job, id);
+    struct pixel_lines p;
+    if (o->side == 0)
+        return;
+    g->scratch->counts.tests++;
+    if (!g->certain) {
+        try_one_by_one(g, o, &p, 0, g->open, false);
+        return;
+    }
+    pixel_lines_make(&p, o, g->receiver, g->x, g->y);
+    if (g->center) {
+        int sign = at_sample(&p, 0.5, 0.5, 15);
+        if (sign >= 0)
+            try_one_by_one(g, o, &p, sign > 0, sign == 0, false);
+        return;
+    }
+    int whole = whole_pixel(&p, 15);
+    if (whole < 0)
+        return;
+    struct samples_sure sure = whole > 0 ? (struct samples_sure){~0u, 0} : evaluate(g->scratch, &p, 4);
+    try_one_by_one(g, o, &p, sure.inside & g->open, g->open & ~(sure.inside | sure.outside), true);
+}
+
+/* One cell of one level. `single`: the box meets only this cell of the level. */
+static inline void group_try_cell(struct group *g, const struct light_face *face, unsigned level, uint32_t cell_x,
+                                  uint32_t cell_y, const uint32_t from[2], bool single)
+{
+    const struct light_grid *grid = g->job->grid;
+    const struct light_box *box = g->box;
+    uint32_t cell = face->level_first[level] + cell_y * (face->side >> level) + cell_x;
+    for (uint32_t i = grid->first[cell], end = grid->first[cell + 1]; i < end; i++) {
+        const struct light_ref *r = &grid->refs[grid->entries[i]];
+        if (r->near > box->far)
+            return;
+        if (r->u0 > box->u1 || r->u1 < box->u0 || r->v0 > box->v1 || r->v1 < box->v0 || r->id == g->receiver->id)
+            continue;
+        if (!single) {
+            /* Tried in the first cell that both boxes meet. */
+            uint32_t x = light_cell(r->u0, face->u_start, face->u_scale, face->side) >> level,
+                     y = light_cell(r->v0, face->v_start, face->v_scale, face->side) >> level;
+            if ((x > from[0] ? x : from[0]) != cell_x || (y > from[1] ? y : from[1]) != cell_y)
+                continue;
+        }
+        group_try(g, r->id);
+        if (!g->open)
+            return;
+    }
+}
+
+static inline void group_try_face(struct group *g, const struct light_face *face)
+{
+    const struct light_box *box = g->box;
+    uint32_t x0 = light_cell(box->u0, face->u_start, face->u_scale, face->side),
+             x1 = light_cell(box->u1, face->u_start, face->u_scale, face->side),
+             y0 = light_cell(box->v0, face->v_start, face->v_scale, face->side),
+             y1 = light_cell(box->v1, face->v_start, face->v_scale, face->side);
+    for (uint32_t levels = face->occupied; levels; levels &= levels - 1) {
+        unsigned level = (unsigned)__builtin_ctz(levels);
+        const uint32_t from[2] = {x0 >> level, y0 >> level}, to[2] = {x1 >> level, y1 >> level};
+        bool single = from[0] == to[0] && from[1] == to[1];
+        for (uint32_t y = from[1]; y <= to[1]; y++)
+            for (uint32_t x = from[0]; x <= to[0]; x++) {
+                group_try_cell(g, face, level, x, y, from, single);
+                if (!g->open)
+                    return;
+            }
+    }
+}
+
+/* Takes the shadowed samples out of g->open. `quad`: where they lie; NULL: not known. A pixel's centre need not lie on its triangle, since the
+ * camera pass may round. */
+static inline void group_cast(struct group *g, const struct quad *quad)
+{
+    const struct light_grid *grid = g->job->grid;
+    const struct receiver *r = g->receiver;
+    for (unsigned faces = g->center ? (1u << grid->face_count) - 1 : r->faces_met; faces && g->open; faces &= faces - 1) {
+        unsigned f = (unsigned)__builtin_ctz(faces);
+        struct light_box box;
+        if (!query_box(g->job, g->center ? NULL : &r->boxes[f], f, quad, &box))
+            continue;
+        g->box = &box;
+        group_try_face(g, &grid->faces[f]);
+    }
+}

@@ -1,0 +1,67 @@
+/* One frame's work for one light, cut into tiles that any thread may take. The tiles' code is compiled once an instruction set
+ * (tile_*.c); which one runs changes no result, since every decision is certain. */
+#pragma once
+
+#include "exact/bins.h"
+#include "exact/light_grid.h"
+#include "exact/lines.h"
+#include "exact/slow.h"
+
+enum { TILE_PIXELS = TILE_SIDE * TILE_SIDE, OCCLUDERS_KEPT = 512, RECEIVERS_KEPT = 256 };
+
+struct tile_job {
+    const struct triangles *triangles;
+    const struct light_grid *grid;
+    const struct light *light;
+    const struct view *view;
+    struct exact_apex to_light;
+    struct screen screen;
+    const struct bins *bins;   /* 32 samples */
+    const uint32_t *ids;       /* 1 sample */
+    uint32_t *receivers, *lit; /* masks, 32 samples */
+    float *visibility;
+    struct tile_scratch *scratch; /* one a thread */
+};
+
+/* A triangle that may shadow others: its lines on the picture, turned so that all four are positive where it does, on planes whose F is
+ * negative; scaled to about 1. */
+struct occluder {
+    struct lines lines;
+    uint32_t id;
+    int side; /* the light's; 0: it shadows nothing */
+};
+
+/* A triangle that is seen: its plane's form, turned so that F is negative, scaled to about 1. */
+struct receiver {
+    uint32_t id;
+    bool certain; /* the sign of F is known */
+    bool faces;   /* if certain: it faces the light where the camera sees it */
+    double fixed, v, vx, vy, fixed_size, v_size;
+    unsigned faces_met; /* bit a face of the grid */
+    struct light_box boxes[LIGHT_FACES_MAX];
+};
+
+struct tile_counts {
+    uint64_t receivers; /* samples that may receive */
+    uint64_t tests;     /* occluders against a pixel's samples */
+    uint64_t undecided; /* samples that single precision left */
+    uint64_t exact;     /* decided in integers */
+};
+
+struct tile_scratch {
+    float x[32], y[32]; /* view_samples32 */
+    float key[TILE_PIXELS][32];
+    uint32_t id[TILE_PIXELS][32];
+    float key_error[TILE_PIXELS]; /* of any key of the pixel */
+    struct occluder occluders[OCCLUDERS_KEPT];
+    struct receiver seen[RECEIVERS_KEPT];
+    struct slow slow;
+    struct tile_counts counts;
+};
+
+typedef void tile_function(void *job, size_t index, unsigned worker);
+struct tile_kernel {
+    tile_function *samples32, *point; /* of struct tile_job, for job_pool_for() */
+};
+
+extern const struct tile_kernel tile_plain, tile_avx2, tile_avx512;

@@ -1,0 +1,118 @@
+/* The tiles' work. Included by tile_*.c, each compiled for one instruction set. */
+#pragma once
+
+#include "exact/visible.h"
+
+/* The samples in `mask` of one pixel, which all see receiver `id`: those that receive, and those of them that are lit. */
+static inline uint32_t shade_group(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t mask, uint32_t x,
+                                   uint32_t y, uint32_t *lit)
+{
+    const struct receiver *r = receiver_get(s, job, id);
+    struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = mask, .certain = r->certain};
+    struct quad quad;
+    if (r->certain && !r->faces)
+        return 0;
+    bool placed = r->certain && quad_make(&quad, job, r, x, y, 1);
+    int reached = placed ? quad_within_reach(job->light, &quad) : -1;
+    if (!r->certain || reached < 0) {
+        for (uint32_t bits = mask; bits; bits &= bits - 1) {
+            unsigned i = (unsigned)__builtin_ctz(bits);
+            struct sample_ray ray = group_ray(&g, i);
+            if (!slow_receives(&s->slow, &ray, id))
+                g.open &= ~(1u << i);
+        }
+    } else if (reached == 0) {
+        return 0;
+    }
+    uint32_t receivers = g.open;
+    s->counts.receivers += (unsigned)__builtin_popcount(receivers);
+    if (g.open)
+        group_cast(&g, placed ? &quad : NULL);
+    *lit |= g.open;
+    return receivers;
+}
+
+static inline uint32_t shade_pixel(struct tile_scratch *s, const struct tile_job *job, uint32_t pixel, uint32_t x, uint32_t y,
+                                   uint32_t *lit)
+{
+    uint32_t receivers = 0;
+    for (uint32_t left = ~0u; left;) {
+        uint32_t id = s->id[pixel][__builtin_ctz(left)], mask = 0;
+        for (int i = 0; i < 32; i += WIDTH)
+            mask |= wide_same(s->id[pixel] + i, id) << i;
+        left &= ~mask;
+        if (id != SCENE_NONE)
+            receivers |= shade_group(s, job, id, mask, x, y, lit);
+    }
+    return receivers;
+}
+
+static inline void tile_clear(struct tile_scratch *s)
+{
+    for (int p = 0; p < TILE_PIXELS; p++) {
+        s->key_error[p] = 0;
+        for (int i = 0; i < 32; i++) {
+            s->key[p][i] = -INFINITY;
+            s->id[p][i] = SCENE_NONE;
+        }
+    }
+}
+
+static inline void tile_samples32(void *context, size_t index, unsigned worker)
+{
+    const struct tile_job *job = context;
+    struct tile_scratch *s = &job->scratch[worker];
+    const struct bins *bins = job->bins;
+    const struct view *view = job->view;
+    uint32_t x0 = (uint32_t)(index % bins->columns) * TILE_SIDE, y0 = (uint32_t)(index / bins->columns) * TILE_SIDE;
+    uint32_t width = view->width - x0 < TILE_SIDE ? view->width - x0 : TILE_SIDE,
+             height = view->height - y0 < TILE_SIDE ? view->height - y0 : TILE_SIDE;
+    bool empty = bins->first[index] == bins->first[index + 1];
+    if (!empty)
+        tile_clear(s);
+    for (uint32_t i = bins->first[index]; i < bins->first[index + 1]; i++)
+        show(s, job, bins->entries[i], x0, y0, width, height);
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            size_t at = (size_t)(y0 + y) * view->width + x0 + x;
+            uint32_t lit = 0, receivers = empty ? 0 : shade_pixel(s, job, y * TILE_SIDE + x, x0 + x, y0 + y, &lit);
+            job->receivers[at] = receivers;
+            job->lit[at] = lit;
+            job->visibility[at] = receivers ? (float)__builtin_popcount(lit) / (float)__builtin_popcount(receivers) : 0;
+        }
+}
+
+/* 1 lit. */
+static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t x, uint32_t y)
+{
+    if (id == SCENE_NONE || job->triangles->flags[id] & TRIANGLE_IGNORED)
+        return false;
+    const struct receiver *r = receiver_get(s, job, id);
+    struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = 1, .center = true};
+    struct quad quad;
+    bool placed = g.certain = r->certain && quad_make(&quad, job, r, x + 0.5, y + 0.5, 0);
+    int reached = placed ? (r->faces ? quad_within_reach(job->light, &quad) : 0) : -1;
+    if (reached < 0) {
+        struct sample_ray ray = group_ray(&g, 0);
+        reached = slow_receives(&s->slow, &ray, id);
+    }
+    if (!reached)
+        return false;
+    s->counts.receivers++;
+    group_cast(&g, placed ? &quad : NULL);
+    return g.open;
+}
+
+static inline void tile_point(void *context, size_t index, unsigned worker)
+{
+    const struct tile_job *job = context;
+    struct tile_scratch *s = &job->scratch[worker];
+    const struct view *view = job->view;
+    uint32_t columns = (view->width + TILE_SIDE - 1) / TILE_SIDE;
+    uint32_t x0 = (uint32_t)(index % columns) * TILE_SIDE, y0 = (uint32_t)(index / columns) * TILE_SIDE;
+    for (uint32_t y = y0; y < y0 + TILE_SIDE && y < view->height; y++)
+        for (uint32_t x = x0; x < x0 + TILE_SIDE && x < view->width; x++) {
+            size_t at = (size_t)y * view->width + x;
+            job->visibility[at] = point_is_lit(s, job, job->ids[at], x, y) ? 1.0f : 0.0f;
+        }
+}

@@ -1,0 +1,3 @@
+#include "exact/tile_code.h"
+
+const struct tile_kernel tile_plain = {tile_samples32, tile_point};

@@ -1,0 +1,145 @@
+/* A tile's code: which triangle each of the 32 samples of each pixel sees. Nearer has the larger key: 1 / t in perspective, -t else, both
+ * linear in the picture. */
+#pragma once
+
+#include "exact/blocked.h"
+
+/* A triangle being put into a tile. */
+struct shown {
+    uint32_t id;
+    bool certain;           /* its lines and keys mean something */
+    bool plain;             /* no mask, and wholly between near and far */
+    lane4 v, vx, vy, error; /* edges, positive inside; lane 3 always */
+    double key, key_x, key_y, key_error;
+};
+
+static inline bool between_planes(const struct view *v, const struct dvec3 c[3])
+{
+    for (int i = 0; i < 3; i++) {
+        struct dvec3 d = dvec3_sub(c[i], v->eye);
+        double z = dvec3_dot(d, v->forward), room = 1e-9 * (fabs(d.x) + fabs(d.y) + fabs(d.z));
+        if (!(z - room > v->near && z + room < v->far))
+            return false;
+    }
+    return true;
+}
+
+/* False when the camera certainly does not see it. */
+static inline bool shown_make(struct shown *t, const struct tile_job *job, uint32_t id)
+{
+    struct dvec3 c[3];
+    struct forms forms;
+    struct lines l;
+    struct exact_apex eye = eye_of(job->view);
+    unsigned flags = job->triangles->flags[id];
+    triangle_corners(job->triangles, id, c);
+    forms_make(&forms, &eye, &c[0], &c[1], &c[2]);
+    lines_make(&l, &forms, &job->screen);
+    double fixed = l.fixed[3], fixed_error = LINE_ROUNDING * l.fixed_size[3] + LINE_UNDERFLOW;
+    bool flat = job->view->orthographic;
+    *t = (struct shown){.id = id};
+    t->certain = fabs(fixed) > 4 * fixed_error;
+    t->plain = !(flags & TRIANGLE_HOLES) && between_planes(job->view, c);
+    if (!t->certain)
+        return true;
+    int slope = (fixed > 0) == flat ? 1 : -1;
+    if (slope == (flags & TRIANGLE_HIDDEN_BACK ? 1 : flags & TRIANGLE_HIDDEN_MIRRORED ? -1 : 0))
+        return false;
+    double turn = fixed > 0 ? 1 : -1, along = (flat ? 1 : -1) / fixed;
+    lane4 scale = turn / (l.v_size + LINE_UNDERFLOW);
+    t->v = l.v * scale, t->vx = l.vx * scale, t->vy = l.vy * scale;
+    t->error = l.v_size * lane_abs(scale) * LINE_ROUNDING + LINE_UNDERFLOW;
+    t->v[3] = 1, t->vx[3] = t->vy[3] = 0, t->error[3] = 0;
+    t->key = l.v[3] * along, t->key_x = l.vx[3] * along, t->key_y = l.vy[3] * along;
+    /* 4 fixed_error < |fixed|, so the relative error of 1 / fixed is less than 4/3 of fixed_error / |fixed|. */
+    t->key_error = 2 * (LINE_ROUNDING * l.v_size[3] + l.v_size[3] * fixed_error / fabs(fixed)) / fabs(fixed);
+    return true;
+}
+
+/* Samples of `bits` that the triangle has now, decided one by one. */
+static inline void show_slowly(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
+                               uint32_t x, uint32_t y, uint32_t bits, uint32_t crossed, const float keys[32], float error)
+{
+    uint32_t *ids = s->id[pixel];
+    for (; bits; bits &= bits - 1) {
+        unsigned i = (unsigned)__builtin_ctz(bits);
+        struct sample_ray ray = sample_ray(job->view, x + (double)view_samples32[i][0], y + (double)view_samples32[i][1]);
+        if (!(crossed >> i & 1) && !slow_crosses(&s->slow, &ray, t->id))
+            continue;
+        if (!slow_meets(&s->slow, &ray, t->id))
+            continue;
+        if (ids[i] != SCENE_NONE && !slow_is_before(&s->slow, &ray, t->id, ids[i]))
+            continue;
+        ids[i] = t->id;
+        s->key[pixel][i] = t->certain ? keys[i] : 0;
+        if (!(error <= s->key_error[pixel]))
+            s->key_error[pixel] = error;
+    }
+}
+
+static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
+                                 uint32_t x, uint32_t y)
+{
+    float keys[32];
+    if (!t->certain) {
+        show_slowly(s, job, t, pixel, x, y, ~0u, 0, keys, INFINITY);
+        return;
+    }
+    struct pixel_lines p = {.g = t->v + (double)x * t->vx + (double)y * t->vy, .gx = t->vx, .gy = t->vy, .error = t->error};
+    int whole = whole_pixel(&p, 7);
+    if (whole < 0)
+        return;
+    struct samples_sure sure = whole > 0 ? (struct samples_sure){~0u, 0} : evaluate(s, &p, 3);
+    uint32_t unsure = ~(sure.inside | sure.outside);
+    if (!(sure.inside | unsure))
+        return;
+    double key = t->key + x * t->key_x + y * t->key_y;
+    float own = (float)(t->key_error + (fabs(key) + fabs(t->key_x) + fabs(t->key_y)) * SINGLE_ROUNDING + SINGLE_UNDERFLOW);
+    float error = own > s->key_error[pixel] ? own : s->key_error[pixel];
+    uint32_t nearer = 0, farther = 0;
+    wide k0 = wide_all((float)key), kx = wide_all((float)t->key_x), ky = wide_all((float)t->key_y), room = wide_all(own + error);
+    for (int i = 0; i < 32; i += WIDTH) {
+        wide value = wide_add(wide_add(k0, wide_mul(kx, wide_load(s->x + i))), wide_mul(ky, wide_load(s->y + i)));
+        wide over = wide_sub(value, wide_load(s->key[pixel] + i));
+        unsigned above = wide_above(over, room);
+        nearer |= above << i;
+        farther |= wide_above(wide_sub(wide_all(0), room), over) << i;
+        unsigned take = t->plain ? above & sure.inside >> i : 0;
+        wide_put(keys + i, value, ~0u);
+        wide_put(s->key[pixel] + i, value, take & ((1ull << WIDTH) - 1));
+        wide_put_id(s->id[pixel] + i, t->id, take & ((1ull << WIDTH) - 1));
+    }
+    if (t->plain && (nearer & sure.inside))
+        s->key_error[pixel] = error;
+    uint32_t slowly = (unsure & ~farther) | (sure.inside & ~farther & (t->plain ? ~nearer : ~0u));
+    if (slowly)
+        show_slowly(s, job, t, pixel, x, y, slowly, sure.inside, keys, error);
+}
+
+/* Pixels [from, to) of `length` that [low, high] in picture positions meets. */
+static inline void pixel_span(float low, float high, uint32_t begin, uint32_t length, uint32_t *from, uint32_t *to)
+{
+    low -= BIN_MARGIN * (1 + fabsf(low));
+    high += BIN_MARGIN * (1 + fabsf(high));
+    *from = low > (float)begin ? low < (float)(begin + length) ? (uint32_t)low - begin : length : 0;
+    *to = high < (float)(begin + length) ? high > (float)begin ? (uint32_t)high - begin + 1 : 0 : length;
+}
+
+static inline void show(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t x0, uint32_t y0, uint32_t width,
+                        uint32_t height)
+{
+    const struct triangles *t = job->triangles;
+    const float *a = job->bins->corners[t->corners[id][0]], *b = job->bins->corners[t->corners[id][1]],
+                *c = job->bins->corners[t->corners[id][2]];
+    uint32_t left = 0, right = width, top = 0, bottom = height;
+    struct shown shown;
+    if (!isnan(a[0] + b[0] + c[0])) {
+        pixel_span(fminf(fminf(a[0], b[0]), c[0]), fmaxf(fmaxf(a[0], b[0]), c[0]), x0, width, &left, &right);
+        pixel_span(fminf(fminf(a[1], b[1]), c[1]), fmaxf(fmaxf(a[1], b[1]), c[1]), y0, height, &top, &bottom);
+    }
+    if (left >= right || top >= bottom || !shown_make(&shown, job, id))
+        return;
+    for (uint32_t y = top; y < bottom; y++)
+        for (uint32_t x = left; x < right; x++)
+            show_in_pixel(s, job, &shown, y * TILE_SIDE + x, x0 + x, y0 + y);
+}
