@@ -1,4 +1,4 @@
-/* The sockets: HTTP and WebSocket on one port. net.c is the only file that includes libwebsockets. All functions belong to the network
+/* The sockets: HTTP and WebSocket on one port. Only net.c and net_*.c include libwebsockets. All functions belong to the network
  * thread, the one in net_run(), except net_wake() and net_stop(). Connections are named by id, never by pointer; an id whose connection
  * is gone is ignored. */
 #pragma once

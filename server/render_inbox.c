@@ -81,6 +81,24 @@ void render_loop_sent(struct render_loop *loop, uint32_t view, uint64_t frame, u
     pthread_mutex_unlock(&loop->mutex);
 }
 
+bool render_loop_may_send(struct render_loop *loop, uint32_t view)
+{
+    pthread_mutex_lock(&loop->mutex);
+    const struct stream_view *v = render_loop_find_view(loop, view);
+    bool may = !v || stream_view_may_send(v);
+    pthread_mutex_unlock(&loop->mutex);
+    return may;
+}
+
+bool render_loop_is_stale(struct render_loop *loop, uint32_t view, uint64_t frame, uint64_t since_us)
+{
+    pthread_mutex_lock(&loop->mutex);
+    const struct stream_view *v = render_loop_find_view(loop, view);
+    bool stale = !v || stream_view_is_stale(v, frame, since_us, clock_us());
+    pthread_mutex_unlock(&loop->mutex);
+    return stale;
+}
+
 void render_loop_lost(struct render_loop *loop, uint32_t view, uint64_t frame)
 {
     pthread_mutex_lock(&loop->mutex);

@@ -47,6 +47,9 @@ void render_loop_close(struct render_loop *loop, uint32_t view);
 /* False when `frame` is none that was sent. */
 bool render_loop_ack(struct render_loop *loop, uint32_t view, uint64_t frame);
 void render_loop_sent(struct render_loop *loop, uint32_t view, uint64_t frame, uint32_t encode_us, size_t bytes);
+/* stream_view_may_send() and stream_view_is_stale() of the view; true for one that is gone. */
+bool render_loop_may_send(struct render_loop *loop, uint32_t view);
+bool render_loop_is_stale(struct render_loop *loop, uint32_t view, uint64_t frame, uint64_t since_us);
 void render_loop_lost(struct render_loop *loop, uint32_t view, uint64_t frame);
 /* Whether the session's socket has pending writes. */
 void render_loop_blocked(struct render_loop *loop, uint64_t session, bool blocked);

@@ -25,6 +25,7 @@ struct render_request {
     int quality;
     uint64_t session;
     uint32_t request_id;
+    unsigned rounds;        /* frames rendered for it so far */
     uint64_t deadline_us;   /* clock_us(); 0: none. Not started after it */
     _Atomic bool cancelled; /* nobody waits for it any more */
 

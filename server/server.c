@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "answer.h"
 #include "dispatch.h"
+#include "frame_sender.h"
 #include "http.h"
 #include "methods/methods.h"
 #include "pending.h"
@@ -72,39 +73,15 @@ static void on_blocked(void *context, uint64_t id, bool blocked)
     render_loop_blocked(server->loop, id, blocked);
 }
 
-static void tell_view_error(struct server *server, const struct encode_job *job)
-{
-    json_t *params = rpc_error_json(rpc_code_of(&job->err), &job->err);
-    json_object_set_new(params, "view", json_integer(job->header.view));
-    rpc_notify(server, job->session, NOTIFY_VIEW_ERROR, params);
-}
-
-static void send_frame(struct server *server, struct encode_job *job)
-{
-    const struct frame_header *header = &job->header;
-    if (!sessions_find_view(&server->sessions, job->session, header->view)) {
-        atomic_fetch_add(&server->metrics.dropped[DROP_CLOSED], 1);
-    } else if (job->err.code != ERROR_NONE) {
-        render_loop_lost(server->loop, header->view, header->frame);
-        tell_view_error(server, job);
-    } else {
-        size_t size = job->packet->size;
-        render_loop_sent(server->loop, header->view, header->frame, header->encode_us, size);
-        atomic_fetch_add(&server->metrics.sent[header->codec], 1);
-        atomic_fetch_add(&server->metrics.bytes_sent, size);
-        net_send(server->net, job->session, job->packet);
-        job->packet = NULL;
-    }
-}
-
 static void take_pictures(struct server *server)
 {
     for (struct encode_job *job = encode_pool_take(server->encoders), *next; job; job = next) {
         next = job->link;
-        if (job->request)
-            pending_answer(server, job);
-        else
-            send_frame(server, job);
+        if (!job->request) {
+            frame_sender_take(server, job);
+            continue;
+        }
+        pending_answer(server, job);
         encode_job_destroy(job);
     }
 }

@@ -22,6 +22,8 @@ struct view_record {
     struct camera_choice camera;
     char camera_name[64]; /* what camera.name points to */
     struct view_state state;
+    struct encode_job *held;          /* a finished frame that waits for an acknowledgement; owned by frame_sender */
+    uint64_t held_us;                 /* since when */
     uint64_t frames_told, bytes_told; /* as of the last view.stats */
     struct view_record *link;
 };

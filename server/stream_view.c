@@ -45,7 +45,7 @@ uint64_t stream_view_submit(struct stream_view *v, bool still, uint64_t now_us)
     v->shown = v->revision;
     v->still_shown = still;
     v->submitted_us = now_us;
-    v->in_flight[v->in_flight_count++] = (struct stream_frame){.number = ++v->frame_number};
+    v->in_flight[v->in_flight_count++] = (struct stream_frame){.number = ++v->frame_number, .revision = v->revision};
     return v->frame_number;
 }
 
@@ -82,6 +82,21 @@ void stream_view_sent(struct stream_view *v, uint64_t frame, uint32_t encode_us,
     v->encode_us = encode_us;
     v->bytes += bytes;
     v->frames++;
+}
+
+bool stream_view_may_send(const struct stream_view *v)
+{
+    unsigned under_way = 0;
+    for (unsigned i = 0; i < v->in_flight_count; i++)
+        under_way += v->in_flight[i].sent_us > 0;
+    double made_us = v->last.frame_ms * 1000 + v->encode_us;
+    return under_way == 0 || (v->rtt_us > STREAM_ONE_AT_A_TIME_US && (double)v->rtt_us > made_us);
+}
+
+bool stream_view_is_stale(const struct stream_view *v, uint64_t frame, uint64_t since_us, uint64_t now_us)
+{
+    const struct stream_frame *found = find_frame((struct stream_view *)v, frame);
+    return (!found || found->revision != v->revision) && now_us - since_us > STREAM_STALE_US;
 }
 
 bool stream_view_ack(struct stream_view *v, uint64_t frame, uint64_t now_us)

@@ -16,6 +16,12 @@
 #define STREAM_STILL_AFTER_US 200000
 #define STREAM_STILL_QUALITY  90
 
+/* With two frames on their way at once a client that stops reading finds both when it reads again. One is enough where its acknowledgement comes
+ * quicker than the next frame is made, or quicker than a screen shows them. */
+#define STREAM_ONE_AT_A_TIME_US 20000
+/* A frame that waited longer for that than this is not sent when there is something newer to show. */
+#define STREAM_STALE_US         100000
+
 /* Everything that a view shows; whole states replace each other. */
 struct view_state {
     struct render_settings settings;
@@ -29,7 +35,8 @@ struct view_state {
 
 struct stream_frame {
     uint64_t number;
-    uint64_t sent_us; /* when the socket took it; 0: not yet */
+    uint64_t revision; /* of the state that it shows */
+    uint64_t sent_us;  /* when the socket took it; 0: not yet */
 };
 
 struct stream_view {
@@ -74,6 +81,11 @@ uint64_t stream_view_submit(struct stream_view *v, bool still, uint64_t now_us);
 void stream_view_lost(struct stream_view *v, uint64_t frame);
 
 void stream_view_sent(struct stream_view *v, uint64_t frame, uint32_t encode_us, size_t bytes, uint64_t now_us);
+
+/* Whether a frame may be given to the socket now, or has to wait for the acknowledgement of the one before it. */
+bool stream_view_may_send(const struct stream_view *v);
+/* Whether a frame that has waited since then is not worth sending any more: a newer state is to be shown in its place. */
+bool stream_view_is_stale(const struct stream_view *v, uint64_t frame, uint64_t since_us, uint64_t now_us);
 
 /* Acknowledges `frame` and all before it. False when no such frame has been sent. */
 bool stream_view_ack(struct stream_view *v, uint64_t frame, uint64_t now_us);

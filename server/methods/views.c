@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "frame_sender.h"
 #include "methods/methods.h"
 #include "server.h"
 #include "wire.h"
@@ -169,6 +170,7 @@ enum outcome method_view_set(struct server *server, struct call *call, const str
 void view_close(struct server *server, struct view_record *view)
 {
     render_loop_close(server->loop, view->id);
+    frame_sender_drop(view);
     sessions_remove_view(&server->sessions, view);
     atomic_fetch_sub(&server->metrics.views, 1);
 }
@@ -188,10 +190,13 @@ enum outcome method_frame_ack(struct server *server, struct call *call, const st
                               json_t **result, struct error *err)
 {
     (void)given, (void)result;
-    if (!sessions_find_view(&server->sessions, call->session, (uint32_t)p->view))
+    struct view_record *view = sessions_find_view(&server->sessions, call->session, (uint32_t)p->view);
+    if (!view)
         return OUTCOME_NO_VIEW;
-    if (render_loop_ack(server->loop, (uint32_t)p->view, p->frame))
+    if (render_loop_ack(server->loop, view->id, p->frame)) {
+        frame_sender_acked(server, view);
         return OUTCOME_DONE;
+    }
     error_set(err, ERROR_USAGE, "frame",
               "frame: no such frame has been sent; the number in a received frame's header is accepted");
     return OUTCOME_FAILED;

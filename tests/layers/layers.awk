@@ -61,6 +61,8 @@ FNR == 1 {
     to = included_folder(name, FILENAME)
     if (to == "" && folder != "server")
         complain("\"" name "\" is no header of the tree")
+    else if (name == "net_state.h" && FILENAME !~ /^server\/net(_[a-z]+)?\.c$/)
+        complain("\"net_state.h\" is for server/net.c and net_*.c alone")
     else if (to != "" && !((folder, to) in may))
         complain(folder " includes \"" name "\": " to " is not below it")
 }
@@ -69,7 +71,7 @@ FNR == 1 {
     name = $0
     sub(/^[^<]*</, "", name)
     sub(/>.*/, "", name)
-    only("^libwebsockets", " server/net.c ", "the network thread")
+    only("^libwebsockets", " server/net_state.h ", "the network thread: net*.c include net_state.h")
     # The renderer's front joins the parts: it binds their buffers, nothing more.
     only("^epoxy/gl\\.h$", " gl draw passes shadow renderer/renderer.c renderer/frame.c renderer/reading.c ", "GL")
     only("^(epoxy/egl|GL/|GLES[23]?/|EGL/|KHR/)", " gl ", "GL")

@@ -135,7 +135,7 @@ bool renderer_collect(struct renderer *r, bool wait, void *pixels, size_t size, 
                                 .width = f->settings.width,
                                 .height = f->settings.height,
                                 .format = f->settings.format,
-                                .converged = true,
+                                .converged = atomic_load(&fake.submitted) >= atomic_load(&fake.rounds),
                                 .frame_ms = (double)(clock_us() - f->started_us) / 1000};
     memmove(&r->flights[0], &r->flights[1], --r->count * sizeof r->flights[0]);
     atomic_fetch_add(&fake.collected, 1);

@@ -236,6 +236,20 @@ static void test_snapshots_come_in_order_and_are_bounded(void **state)
     }
 }
 
+/* A progressive system's picture is rendered until nothing changes any more. */
+static void test_snapshots_are_refined(void **state)
+{
+    struct fixture *f = *state;
+    atomic_store(&fake.rounds, 5);
+    assert_true(render_loop_request(f->loop, make_snapshot(f, 1)));
+    struct encode_job *job = next_job(f, PATIENCE_MS);
+    assert_non_null(job);
+    assert_non_null(job->packet);
+    assert_int_equal(atomic_load(&fake.submitted), 5);
+    finish_snapshot(job);
+    assert_null(next_job(f, QUIET_MS));
+}
+
 static void test_late_and_cancelled_snapshots_are_not_rendered(void **state)
 {
     struct fixture *f = *state;
@@ -325,6 +339,7 @@ int main(void)
         CASE(test_without_credit_nothing_is_rendered),
         CASE(test_blocked_session_costs_nothing),
         CASE(test_snapshots_come_in_order_and_are_bounded),
+        CASE(test_snapshots_are_refined),
         CASE(test_late_and_cancelled_snapshots_are_not_rendered),
         CASE(test_failed_frame_is_told_once),
         CASE(test_device_lost),

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -281,6 +282,72 @@ static void test_many_clients(void **state)
     assert_true(atomic_load(&f->server.metrics.sent[GNMF_JPEG]) >= CLIENTS * (ROUNDS - 1));
 }
 
+#define STATES 60
+
+static void set_eye(int s, unsigned view, unsigned seq)
+{
+    char text[256];
+    snprintf(text, sizeof text,
+             "{\"jsonrpc\":\"2.0\",\"method\":\"view.set\",\"params\":{\"view\":%u,\"input_seq\":%u,\"camera\":{\"eye\":[%u,3,5],"
+             "\"target\":[0,0,0]}}}",
+             view, seq, seq);
+    ws_put(s, text);
+}
+
+/* A client that steers and does not read: no work is done for it, and when it reads again the newest state follows what had left before. */
+static void test_client_that_does_not_read(void **state)
+{
+    struct fixture *f = *state;
+    atomic_store(&fake.delay_us, 1000);
+    int s = ws_open(f);
+    unsigned view = ws_open_view(s);
+    for (unsigned i = 2; i <= STATES; i++) {
+        set_eye(s, view, i);
+        usleep(5000);
+    }
+    assert_in_range(atomic_load(&fake.submitted), 1, STREAM_IN_FLIGHT);
+    assert_in_range(ws_get_frame(s, view), 1, 2);
+    assert_int_equal(ws_get_frame(s, view), STATES);
+    assert_true(atomic_load(&f->server.metrics.dropped[DROP_CREDIT]) >= STATES - 4);
+    close(s);
+}
+
+/* A thousand states a second from one client: none waits, the last is shown within two frames, and the other client has its share. */
+static void test_flood_of_states(void **state)
+{
+    struct fixture *f = *state;
+    atomic_store(&fake.delay_us, 4000);
+    int flood = ws_open(f), other = ws_open(f);
+    unsigned flooded = ws_open_view(flood), view = ws_open_view(other);
+    unsigned sent = 1, shown = 0, frames = 0;
+    struct timespec start, now;
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    for (double elapsed = 0; elapsed < 1;
+         elapsed = (double)(now.tv_sec - start.tv_sec) + 1e-9 * (double)(now.tv_nsec - start.tv_nsec)) {
+        while (sent < 1100 * elapsed)
+            set_eye(flood, flooded, ++sent);
+        set_eye(other, view, ++shown + 1);
+        while (ws_get_frame(other, view) < shown + 1)
+            ;
+        frames++;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+    }
+    set_eye(flood, flooded, ++sent);
+    unsigned behind = 0, last = 0;
+    while (last != sent) {
+        last = ws_get_frame(flood, flooded);
+        behind++;
+    }
+    assert_true(sent >= 500);
+    /* It did not read meanwhile: what had left before, then the newest. */
+    assert_in_range(behind, 1, 2);
+    /* Frames of 4 ms, shared by two: more would be rendered than the half under load of the machine that runs the test. */
+    assert_true(frames > 10);
+    assert_true(atomic_load(&fake.submitted) < 2 * frames + 8);
+    close(flood);
+    close(other);
+}
+
 /* More scenes than are kept: the least used make room, on the device too. */
 static void test_scenes_make_room(void **state)
 {
@@ -310,6 +377,7 @@ static void test_stop_with_work_under_way(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {CASE(test_many_clients), CASE(test_scenes_make_room), CASE(test_stop_with_work_under_way)};
+    const struct CMUnitTest tests[] = {CASE(test_many_clients), CASE(test_client_that_does_not_read), CASE(test_flood_of_states),
+                                       CASE(test_scenes_make_room), CASE(test_stop_with_work_under_way)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,6 +97,36 @@ static void test_ack_is_cumulative_and_checked(void **state)
     assert_true(stream_view_ack(&v, 1, START + 1)); /* late, harmless */
 }
 
+/* One frame under way, unless acknowledgements take longer than frames take to make. */
+static void test_one_frame_at_a_time(void **state)
+{
+    (void)state;
+    struct stream_view v = view_at(START);
+    struct view_state next = {0};
+    enum drop_reason reason;
+    uint64_t first = stream_view_submit(&v, false, START);
+    assert_true(stream_view_may_send(&v));
+    stream_view_sent(&v, first, 1000, 5000, START);
+    stream_view_update(&v, &next, START, &reason);
+    uint64_t second = stream_view_submit(&v, false, START);
+    assert_false(stream_view_may_send(&v));
+    v.last.frame_ms = 30;
+    v.rtt_us = STREAM_ONE_AT_A_TIME_US + 5000;
+    assert_false(stream_view_may_send(&v));
+    v.rtt_us = 80000;
+    assert_true(stream_view_may_send(&v));
+    v.rtt_us = 0;
+    /* Waiting makes it stale only when there is something newer. */
+    assert_false(stream_view_is_stale(&v, second, START, START + 10 * STREAM_STALE_US));
+    stream_view_update(&v, &next, START, &reason);
+    assert_false(stream_view_is_stale(&v, second, START, START + STREAM_STALE_US));
+    assert_true(stream_view_is_stale(&v, second, START, START + STREAM_STALE_US + 1));
+    assert_true(stream_view_ack(&v, first, START + 500));
+    assert_true(stream_view_may_send(&v));
+    stream_view_lost(&v, second);
+    assert_int_equal(v.in_flight_count, 0);
+}
+
 static void test_lost_frame_returns_credit(void **state)
 {
     (void)state;
@@ -158,6 +188,7 @@ int main(void)
         cmocka_unit_test(test_unfinished_view_goes_on),
         cmocka_unit_test(test_credit),
         cmocka_unit_test(test_ack_is_cumulative_and_checked),
+        cmocka_unit_test(test_one_frame_at_a_time),
         cmocka_unit_test(test_lost_frame_returns_credit),
         cmocka_unit_test(test_blocked_socket),
         cmocka_unit_test(test_frame_rate),

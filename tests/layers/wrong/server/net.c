@@ -1,4 +1,4 @@
-#include <libwebsockets.h>
+#include "net_state.h"
 #include "renderer.h"
 #include "session.h"
 #include "proto/tables.h"
