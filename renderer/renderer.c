@@ -182,13 +182,34 @@ bool renderer_oldest(const struct renderer *r, uint32_t *width, uint32_t *height
     return true;
 }
 
+/* Turns a direction about the vertical axis. */
+static struct dvec3 turned(struct dvec3 v, double degrees)
+{
+    double s = sin(degrees * M_PI / 180), c = cos(degrees * M_PI / 180);
+    return dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
+}
+
+/* Turns a point about the vertical axis through the scene's centre. */
+static struct dvec3 turned_about(const struct scene *scene, struct dvec3 p, double degrees)
+{
+    struct dvec3 centre = dbox_is_empty(&scene->bounds) ? dvec3(0, 0, 0) : dbox_center(&scene->bounds);
+    return dvec3_add(centre, turned(dvec3_sub(p, centre), degrees));
+}
+
 struct light light_turned(const struct scene *scene, const struct light *light, double degrees)
 {
-    struct light turned = *light;
-    double s = sin(degrees * M_PI / 180), c = cos(degrees * M_PI / 180);
-    struct dvec3 centre = dbox_is_empty(&scene->bounds) ? dvec3(0, 0, 0) : dbox_center(&scene->bounds);
-    struct dvec3 p = dvec3_sub(light->position, centre), d = light->direction;
-    turned.position = dvec3_add(centre, dvec3(c * p.x + s * p.z, p.y, c * p.z - s * p.x));
-    turned.direction = dvec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
-    return turned;
+    struct light result = *light;
+    result.position = turned_about(scene, light->position, degrees);
+    result.direction = turned(light->direction, degrees);
+    return result;
+}
+
+struct camera camera_turned(const struct scene *scene, const struct camera *camera, double degrees)
+{
+    struct camera result = *camera;
+    result.eye = turned_about(scene, camera->eye, degrees);
+    result.right = turned(camera->right, degrees);
+    result.up = turned(camera->up, degrees);
+    result.back = turned(camera->back, degrees);
+    return result;
 }

@@ -123,3 +123,5 @@ bool renderer_read_lists(struct render_scene *s, unsigned light, struct shadow_l
 
 /* Light `index` turned by `degrees` about the vertical axis through the scene's centre: --moving. */
 struct light light_turned(const struct scene *scene, const struct light *light, double degrees);
+/* The camera likewise: it goes round the scene and looks at what it looked at. */
+struct camera camera_turned(const struct scene *scene, const struct camera *camera, double degrees);

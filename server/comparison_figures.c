@@ -1,5 +1,6 @@
 #include "comparison.h"
 #include "figures.h"
+#include "flicker_run.h"
 #include "lights.h"
 #include "output.h"
 #include "stage.h"
@@ -66,4 +67,24 @@ void figures_add_comparison(json_t *figures, const struct against *a, const stru
                         json_pack("{s:I, s:I, s:I, s:f}", "rays", (json_int_t)c->counts.rays, "tests",
                                   (json_int_t)c->counts.tests, "exact", (json_int_t)c->counts.exact, "ms", c->reference_ms));
     json_object_set_new(figures, "per_light", light_rows(stage, c));
+}
+
+void figures_add_flicker(json_t *figures, const struct flicker_figures *flicker)
+{
+    json_t *object = json_object(), *tested = json_object(), *reference = json_object();
+    unsigned frames = 0;
+    for (int i = 0; i < FLICKER_MOTIONS; i++) {
+        bool measured = flicker[i].frames > 0;
+        const char *name = flicker_motion_names[i];
+        frames = measured ? flicker[i].frames : frames;
+        json_object_set_new(object, name, measured ? json_number(flicker[i].difference) : json_null());
+        json_object_set_new(tested, name, measured ? json_number(flicker[i].tested) : json_null());
+        json_object_set_new(reference, name, measured ? json_number(flicker[i].reference) : json_null());
+    }
+    json_object_set_new(object, "tested", tested);
+    json_object_set_new(object, "reference", reference);
+    json_object_set_new(object, "frames", json_integer(frames));
+    if (frames)
+        json_object_set(figures, "flicker", object);
+    json_decref(object);
 }

@@ -7,6 +7,7 @@
 
 struct against;
 struct comparison;
+struct flicker_figures;
 struct measurement;
 struct metrics;
 struct stage;
@@ -27,6 +28,9 @@ json_t *figures_told(const struct shadow_figure *figures, size_t count);
 /* Adds what only a comparison has to figures_render()'s object. */
 void figures_add_comparison(json_t *figures, const struct against *against, const struct stage *stage,
                             const struct comparison *c);
+
+/* `flicker`: one a motion (flicker_run.h). Adds nothing when none was measured. */
+void figures_add_flicker(json_t *figures, const struct flicker_figures *flicker);
 
 /* Values of a system's parameters: {"size": 1024, "layout": "exact", ...}; a choice that is a number is written as one. */
 json_t *figures_params(const struct shadow_system *system, const struct shadow_params *params);

@@ -9,9 +9,11 @@
 #include "comparison.h"
 #include "difference.h"
 #include "figures.h"
+#include "flicker_run.h"
 #include "import/import.h"
 #include "lights.h"
 #include "measure.h"
+#include "numbers.h"
 #include "options.h"
 #include "output.h"
 #include "progress.h"
@@ -23,6 +25,8 @@ struct compare_options {
     const char *picture; /* NULL: none */
     enum image_format format;
     const char *json; /* NULL: none */
+    bool flicker[FLICKER_MOTIONS];
+    unsigned flicker_frames;
 };
 
 static bool set_against(void *target, const char *value, struct error *err)
@@ -47,10 +51,31 @@ static bool set_json(void *target, const char *value, struct error *err)
     return true;
 }
 
+static bool set_flicker(void *target, const char *value, struct error *err)
+{
+    int motion = name_index(flicker_motion_names, value);
+    if (motion < 0)
+        return error_set(err, ERROR_USAGE, "flicker", "light or camera are accepted");
+    ((struct compare_options *)target)->flicker[motion] = true;
+    return true;
+}
+
+static bool set_frames(void *target, const char *value, struct error *err)
+{
+    unsigned long n;
+    if (!number_parse_unsigned(value, FLICKER_FRAMES_MIN, FLICKER_FRAMES_MAX, &n))
+        return error_set(err, ERROR_USAGE, "frames", "%d to %d frames are accepted", FLICKER_FRAMES_MIN, FLICKER_FRAMES_MAX);
+    ((struct compare_options *)target)->flicker_frames = (unsigned)n;
+    return true;
+}
+
 static const struct option option_table[] = {
     {"against", "REF", "point, samples32, arealight[:radius=R,rays=N] or an algorithm (default point)", set_against},
     {"o", "DIFF", "picture of the differences; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_picture},
     {"json", "FILE", "times, memory and error figures as JSON; - is standard output", set_json},
+    {"flicker", "light|camera", "measure flicker too while these turn by 0.05 degrees a frame; may be given for both",
+     set_flicker},
+    {"frames", "N", "frames of --flicker, 3 to 10000 (default 16)", set_frames},
     {0},
 };
 
@@ -68,10 +93,12 @@ static const struct syntax syntax = {
         "The difference picture: grey, where right; orange, where too bright (light leaks); blue, where too dark (acne); stronger\n"
         "colour, larger difference; with several lights, the largest. As EXR: R = tested, G = reference, B = tested - reference,\n"
         "A = 1 where the pixel counts.\n\n"
+        "Flicker: the mean of |V(t+1) - 2 V(t) + V(t-1)| over pixels that are receivers in all three frames, less the reference's own.\n\n"
         "Figures are measured at one sample a pixel; --aa, --moving and --frames-timed change only the times of --json.\n",
     .examples = "  gnomon compare builtin:dragon --algorithm sm:size=1024 -o difference.png\n"
                 "  gnomon compare model.glb --algorithm pcf:kernel=7 --against samples32 --json -\n"
                 "  gnomon compare model.glb --algorithm pcf --against sm:size=4096\n"
+                "  gnomon compare builtin:tree --algorithm coverage --flicker light --flicker camera --frames 32 --json -\n"
                 "  gnomon compare model.glb --algorithm pcf:kernel=9 --against arealight:radius=0.2\n",
 };
 
@@ -122,6 +149,9 @@ static bool check_outputs(const struct compare_options *o, struct error *err)
                          "compare needs --algorithm NAME; gnomon list algorithms prints what is accepted");
     if (o->picture && o->json && !strcmp(o->picture, "-") && !strcmp(o->json, "-"))
         return error_set(err, ERROR_USAGE, "json", "-o - and --json - exclude each other: standard output carries one thing");
+    bool moves = o->flicker[FLICKER_LIGHT] || o->flicker[FLICKER_CAMERA];
+    if (moves && o->against.kind != AGAINST_POINT && o->against.kind != AGAINST_SAMPLES32)
+        return error_set(err, ERROR_USAGE, "flicker", "--flicker is accepted against point and samples32 only");
     return (!o->picture || output_check(o->picture, err)) && (!o->json || output_check(o->json, err));
 }
 
@@ -140,14 +170,48 @@ static bool time_frames(const struct compare_options *o, struct stage *stage, js
     return *figures || error_set(err, ERROR_TRY_AGAIN, NULL, "memory is out for the figures");
 }
 
+static bool report_progress(void *context, double done)
+{
+    progress_set(context, done);
+    return true;
+}
+
+/* Fills figures[motion] for each that was asked for. */
+static bool measure_flicker(const struct compare_options *o, struct stage *stage, struct flicker_figures *figures,
+                            struct error *err)
+{
+    for (int i = 0; i < FLICKER_MOTIONS; i++) {
+        struct progress progress;
+        if (!o->flicker[i])
+            continue;
+        progress_init(&progress, "moving", o->common.quiet);
+        const struct reference_progress report = {report_progress, &progress};
+        bool good =
+            flicker_measure(stage, &o->against, (enum flicker_motion)i, o->flicker_frames, NULL, &report, &figures[i], err);
+        progress_finish(&progress);
+        if (!good)
+            return false;
+    }
+    return true;
+}
+
+static void print_flicker(const struct flicker_figures *figures)
+{
+    for (int i = 0; i < FLICKER_MOTIONS; i++)
+        if (figures[i].frames)
+            printf("flicker, %s turning: %.6f, the reference's own %.6f: %+.6f\n", flicker_motion_names[i], figures[i].tested,
+                   figures[i].reference, figures[i].difference);
+}
+
 /* The table for people, unless standard output carries something else. */
 static bool write_results(const struct compare_options *o, const struct stage *stage, const struct comparison *c,
-                          json_t **figures, struct error *err)
+                          const struct flicker_figures *flicker, json_t **figures, struct error *err)
 {
     if (o->picture && !difference_write(c, stage, &o->against, o->picture, o->format, err))
         return false;
     if (o->json) {
         figures_add_comparison(*figures, &o->against, stage, c);
+        figures_add_flicker(*figures, flicker);
         json_t *taken = *figures;
         *figures = NULL;
         if (!output_json(o->json, taken, err))
@@ -156,19 +220,15 @@ static bool write_results(const struct compare_options *o, const struct stage *s
     if ((o->json && !strcmp(o->json, "-")) || (o->picture && !strcmp(o->picture, "-")))
         return true;
     print_table(o, stage, c);
+    print_flicker(flicker);
     return output_flush(err);
-}
-
-static bool report_progress(void *context, double done)
-{
-    progress_set(context, done);
-    return true;
 }
 
 static bool compare(const struct compare_options *o, struct stage *stage, struct error *err)
 {
     json_t *figures = NULL;
     struct comparison c = {0};
+    struct flicker_figures flicker[FLICKER_MOTIONS] = {0};
     struct progress progress;
     if (o->json && !time_frames(o, stage, &figures, err))
         return false;
@@ -176,7 +236,7 @@ static bool compare(const struct compare_options *o, struct stage *stage, struct
     const struct reference_progress report = {report_progress, &progress};
     bool good = comparison_render(stage, &o->against, &c, err) && comparison_trace(stage, &o->against, &report, &c, err);
     progress_finish(&progress);
-    good = good && write_results(o, stage, &c, &figures, err);
+    good = good && measure_flicker(o, stage, flicker, err) && write_results(o, stage, &c, flicker, &figures, err);
     json_decref(figures);
     comparison_finish(&c);
     return good;
@@ -184,7 +244,7 @@ static bool compare(const struct compare_options *o, struct stage *stage, struct
 
 int command_compare(int argc, char **argv)
 {
-    struct compare_options options = {0};
+    struct compare_options options = {.flicker_frames = FLICKER_FRAMES_DEFAULT};
     struct stage stage = {0};
     struct error err = {0};
     const char *scene = NULL;

@@ -69,6 +69,13 @@ good render builtin:box -o "$work/shown.png" $small --show difference
 good compare builtin:box -o "$work/compared.png" $small --against point
 cmp -s "$work/shown.png" "$work/compared.png" || complain 'render --show difference is not what compare -o writes'
 
+# Flicker: the reference has just its own, no shadow has none.
+good compare builtin:box --size 96x64 --algorithm reference --flicker light --flicker camera --frames 4 --json -
+json "$work/out" '.flicker | .light == 0 and .camera == 0 and .reference.light > 0 and .tested == .reference and .frames == 4' \
+    'flicker: the reference adds none'
+good compare builtin:box --size 96x64 --algorithm none --flicker light --frames 4 --json -
+json "$work/out" '.flicker | .light < 0 and .tested.light == 0 and .camera == null' 'flicker: no shadows, no flicker'
+
 # Masks.
 good compare builtin:box --size 96x64 --algorithm reference:samples=32 --against samples32 --json -
 json "$work/out" '.wrong_samples == 0 and .per_light[0].wrong_samples == 0' 'the reference has no wrong sample'

@@ -45,6 +45,9 @@ bad 64 'needs --algorithm' compare builtin:box
 bad 64 'exclude each other' render builtin:box -o "$work/a.png" --show difference --progressive 3
 bad 64 'difference' serve --listen 127.0.0.1:0 --show difference
 bad 64 '1 to 100000 frames' render builtin:box -o "$work/a.png" --progressive 0
+bad 64 'light or camera' compare builtin:box --algorithm none --flicker sun
+bad 64 '3 to 10000 frames' compare builtin:box --algorithm none --flicker light --frames 2
+bad 64 'against point and samples32 only' compare builtin:box --algorithm none --against sm --flicker light
 bad 64 '1 to 1048576 MiB' render builtin:box -o "$work/a.png" --memory 0
 bad 64 'algorithm' compare builtin:box --algorithm no_such_system
 bad 64 'against' compare builtin:box --algorithm none --against no_such_system

@@ -194,3 +194,9 @@ struct light light_turned(const struct scene *scene, const struct light *light, 
     (void)scene, (void)degrees;
     return *light;
 }
+
+struct camera camera_turned(const struct scene *scene, const struct camera *camera, double degrees)
+{
+    (void)scene, (void)degrees;
+    return *camera;
+}
