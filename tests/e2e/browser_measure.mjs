@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
-import { openBrowser, state, still, until, watchProblems } from "./chromium.mjs";
+import { cancel, openBrowser, state, still, until, watchProblems } from "./chromium.mjs";
 import { PATIENCE_MS, serve } from "./support.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "gnomon-e2e-"));
@@ -123,7 +123,7 @@ try {
     input.dispatchEvent(new Event("input"));
   });
   await control("snapshot-save", "button").evaluate((button) => button.click());
-  await page.locator("#message .cancel").click();
+  await cancel(page);
   await until(page, "word of it", () => /was cancelled/.test(document.getElementById("message").textContent));
 
   // The address shows the same elsewhere: camera, lights, system.

@@ -1,9 +1,10 @@
 // The viewer where things change under it: refused tokens, scenes that change on disk, loads given up, cameras without perspective.
 import assert from "node:assert/strict";
-import { mkdtempSync, writeFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { openBrowser, state, still, until, watchProblems } from "./chromium.mjs";
+import { join, resolve } from "node:path";
+import { cancel, openBrowser, state, still, until, watchProblems } from "./chromium.mjs";
 import { PATIENCE_MS, serve } from "./support.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "gnomon-e2e-"));
@@ -28,7 +29,7 @@ writeFileSync(scene, wall(1));
 
 let server = await serve("--scenes", folder, "--token-file", tokens);
 const browser = await openBrowser({ viewport: { width: 700, height: 400 } });
-const { page } = browser;
+const { page, context } = browser;
 const problems = watchProblems(page);
 // Columns of the picture's middle row that show the wall.
 const columns = () => page.evaluate(() => {
@@ -64,6 +65,14 @@ try {
   await until(page, "home", () => /camera=0/.test(location.hash));
   await still(page, (await state(page)).frame - 1);
 
+  // The command to copy asks this server for the scene: its program knows the name.
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.keyboard.press("k");
+  await until(page, "a command", () => navigator.clipboard.readText().then((text) => text.startsWith("gnomon render wall.gltf --server ")));
+  const command = await page.evaluate(() => navigator.clipboard.readText());
+  execFileSync("sh", ["-c", `${command.replace(/^gnomon/, resolve(process.env.GNOMON))} --quiet`], { cwd: folder, env: { ...process.env, GNOMON_TOKEN: "first" } });
+  assert.equal(readFileSync(join(folder, "wall.png")).subarray(1, 4).toString(), "PNG");
+
   // The file changes: the view shows the new one, and says so.
   assert.equal(await columns(), before);
   writeFileSync(scene, wall(2));
@@ -73,8 +82,8 @@ try {
 
   // A load is given up: the view that was there stays.
   const kept = await state(page);
-  await page.evaluate(() => (location.hash = "#scene=builtin:dragon:triangles=400000"));
-  await page.locator("#message .cancel").click();
+  await page.evaluate(() => (location.hash = "#scene=builtin:dragon:triangles=1000000"));
+  await cancel(page);
   await says("Loading was cancelled");
   await still(page, 0);
   assert.equal((await state(page)).hash, kept.hash);

@@ -52,6 +52,14 @@ export const still = (page, after) => until(page, `still frame after ${after}`, 
   return still === "true" && Number(now) > frame;
 }, after);
 
+// Presses Cancel as soon as there is something to cancel, quicker than a person could: what goes on must not be over by then.
+export const cancel = (page) => until(page, "way to cancel", () => {
+  const button = document.querySelector("#message .cancel");
+  const there = !button.hidden && !document.getElementById("message").hidden;
+  if (there) button.click();
+  return there;
+});
+
 // The canvas: its size, how many colours, a sum that tells pictures apart, mean brightness.
 export const state = (page) => page.evaluate(() => {
   const canvas = document.getElementById("picture");

@@ -50,9 +50,10 @@ function viewOptions({ size, camera, lights, algorithm }: Shown): string[] {
 
 const fileName = (scene: string): string => scene.replace(/^builtin:/, "").replace(/^.*\//, "").replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "-") || "picture";
 
-// `server`: where the scene is known by its name; absent for scenes that every program has.
+// `server`: where the scene is known by its name; absent for scenes that every program has. What is not said is then as the server has it, so
+// all is said.
 export function renderCommand(shown: Shown, server?: string): string {
-  const looks = (["show", "exposure", "ambient", "tonemap", "aa"] as const).filter((key) => shown[key] !== DEFAULTS[key]).map((key) => option(key, shown[key]));
+  const looks = (["show", "exposure", "ambient", "tonemap", "aa"] as const).filter((key) => server || shown[key] !== DEFAULTS[key]).map((key) => option(key, shown[key]));
   const from = server ? [option("server", server)] : [];
   return ["gnomon render", quote(shown.scene), ...from, "-o", quote(`${fileName(shown.scene)}.png`), ...viewOptions(shown), ...looks].join(" ");
 }
@@ -62,7 +63,7 @@ export function compareCommand(shown: Shown, against: string): string {
 }
 
 export function curlCommand(shown: Shown, server: string, guarded: boolean): string {
-  const token = guarded ? ['-H "Authorization: Bearer $TOKEN"'] : [];
+  const token = guarded ? ['-H "Authorization: Bearer $GNOMON_TOKEN"'] : [];
   return ["curl", ...token, "-d", quote(JSON.stringify({ ...shown, format: "png" })), quote(`${server}v1/render`), "-o", quote(`${fileName(shown.scene)}.png`)].join(" ");
 }
 
