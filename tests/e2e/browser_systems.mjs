@@ -10,7 +10,7 @@ const { algorithms } = await hellos.next("hello");
 client.close();
 
 const browser = await openBrowser({ viewport: { width: 700, height: 300 } });
-const { page } = browser;
+const { page, context } = browser;
 const problems = watchProblems(page);
 const settings = () => page.evaluate(() => new URLSearchParams(location.hash.slice(1)).get("algorithm"));
 
@@ -55,6 +55,21 @@ try {
     assert.equal(await page.locator("#message.bad").count(), 0, `${name}: ${await page.locator("#message").textContent()}`);
   }
   assert.ok(pictures.size > 1, "systems differ");
+
+  // What a system tells of itself stands in the page, by its own names; here the words are put into the server's mouth.
+  const other = await context.newPage();
+  await other.routeWebSocket(/ws$/, (socket) => {
+    const far = socket.connectToServer();
+    far.onMessage((message) => {
+      const said = typeof message === "string" && message.includes('"view.stats"') ? JSON.parse(message) : undefined;
+      if (said) said.params.figures = { mean_nodes: 1.25, texels: 1048576, converged: null };
+      socket.send(said ? JSON.stringify(said) : message);
+    });
+  });
+  await other.goto(server.url);
+  await still(other, 0);
+  await until(other, "figures of the system's own", () => document.querySelectorAll("#own-figures dt").length > 0);
+  assert.deepEqual(await other.locator("#own-figures > *").allTextContents(), ["mean nodes", "1.25", "texels", "1,048,576"]);
   assert.deepEqual(problems, []);
   console.log(`all good: ${algorithms.map((a) => a.name).join(", ")}`);
 } finally {

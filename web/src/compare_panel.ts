@@ -14,7 +14,7 @@ export interface CompareEvents {
 const REFERENCES: Record<string, string> = { "ray traced, 1 ray": "point", "ray traced, 32 samples": "samples32", "ray traced, area lights": "arealight" };
 const MEASURE = "Measure";
 
-type Say = (value: number, figures: Comparison) => string;
+type Say = (value: number) => string;
 interface Row {
   label: string;
   help: string;
@@ -27,15 +27,16 @@ const percent = (x: number): string => `${(100 * x).toPrecision(3)} %`;
 const pixels: Say = (n) => `${(n / 32).toFixed(2)} px`; // the wire counts in 1/32
 
 const ROWS: Record<string, Row> = {
-  misclassified: { label: "Wrong pixels", help: "Where more than half of the light is wrongly there or wrongly missing; of the pixels that face a light", say: (n, f) => `${count(n, f)} · ${percent(f.misclassified_fraction)}` },
+  misclassified: { label: "Wrong pixels", help: "Where more than half of the light is wrongly there or wrongly missing; of the pixels that face a light", say: count },
+  misclassified_fraction: { label: "Wrong, of receivers", help: "The same as a part of the pixels that face a light", say: percent },
   rmse: { label: "Error (rms)", help: "Root mean square of the difference in visibility, 0 to 1, over pixels that face a light", say: part },
   max_abs: { label: "Largest error", help: "Of any pixel, 0 to 1", say: part },
   leaks: { label: "Leaks", help: "Wrong pixels with light where all around is shadow", say: count },
   acne: { label: "Acne", help: "Wrong pixels with shadow where all around is light", say: count },
-  "boundary.rmse": { label: "Error at edges (rms)", help: "The same over the pixels at shadow edges alone", say: part },
+  "boundary.rmse": { label: "Error at edges", help: "Root mean square over the pixels at shadow edges alone", say: part },
   "boundary.edge_shift_mean": { label: "Edge shift, mean", help: "How far shadow edges are from where they belong; pixels, 8 at most", say: pixels },
   "boundary.edge_shift_p95": { label: "Edge shift, 95 %", help: "95 in 100 points of the edges are no farther off; pixels", say: pixels },
-  rmse_one_receiver: { label: "Error on one face (rms)", help: "Over pixels that show a single triangle", say: part },
+  rmse_one_receiver: { label: "Error on one face", help: "Root mean square over pixels that show a single triangle", say: part },
   wrong_samples: { label: "Wrong samples", help: "Bits of the shadow masks that differ", say: count },
   identified_fraction: { label: "Triangles found", help: "Of those that a light sees in a texel, the part that its list names; mean", say: percent },
   identified_pooled: { label: "Triangles found, pooled", help: "The same over all texels together", say: percent },
@@ -44,7 +45,7 @@ const ROWS: Record<string, Row> = {
   "reference.ms": { label: "Reference took", help: "To trace the truth", say: (ms) => `${ms.toFixed(0)} ms` },
 };
 // Told elsewhere on the page, or about the run and not the error.
-const PASSED_OVER = /^(misclassified_fraction|frames|visibility_ms|boundary\.(pixels|edge_shift_max)|reference\.\w+)$/;
+const PASSED_OVER = /^(frames|visibility_ms|boundary\.(pixels|edge_shift_max)|reference\.\w+)$/;
 const OBJECTS = ["boundary", "reference"];
 
 // "boundary.rmse" and the like, numbers alone.
@@ -122,7 +123,7 @@ export class ComparePanel {
 
   // With the figures before beside them: what a parameter does is the difference.
   take(figures: Comparison): void {
-    const before = this.last && new Map(rowsOf(this.last).map(([key, row, value]) => [key, row.say(value, this.last!)]));
+    const before = this.last && new Map(rowsOf(this.last).map(([key, row, value]) => [key, row.say(value)]));
     const head = this.table.createTHead();
     head.replaceChildren();
     const names = head.insertRow();
@@ -134,7 +135,7 @@ export class ComparePanel {
       line.dataset["figure"] = key;
       line.title = row.help;
       line.append(Object.assign(document.createElement("th"), { textContent: row.label, scope: "row" }));
-      line.insertCell().textContent = row.say(value, figures);
+      line.insertCell().textContent = row.say(value);
       line.insertCell().textContent = before?.get(key) ?? "";
     }
     this.table.tBodies[0]?.remove();
