@@ -1,5 +1,5 @@
 // node generate.mjs KIND OUT...: makes what follows from gnomon.openrpc.json beside it. Files that would not change are left alone.
-//   c PROTOCOL_H PROTOCOL_C     parameter, method and error tables for server/
+//   c PROTOCOL_H PROTOCOL_C [DOCUMENT]   parameter, method and error tables for server/, of another document for the test
 //   ts FILE                     types for web/
 //   reference FILE              the reference page; `reference-check FILE` fails when FILE is not what would be made
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
@@ -13,7 +13,7 @@ function write(path, text) {
 }
 
 const [kind, ...out] = process.argv.slice(2);
-const document = loadDocument();
+const document = loadDocument(kind === "c" ? out[2] : undefined);
 switch (kind) {
   case "c":
     write(out[0], makeHeader(document));
@@ -28,6 +28,6 @@ switch (kind) {
     }
     break;
   default:
-    console.error("usage: generate.mjs c PROTOCOL_H PROTOCOL_C | ts FILE | reference FILE | reference-check FILE");
+    console.error("usage: generate.mjs c PROTOCOL_H PROTOCOL_C [DOCUMENT] | ts FILE | reference FILE | reference-check FILE");
     process.exit(64);
 }
