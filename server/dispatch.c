@@ -24,7 +24,8 @@ static bool may(const struct server *server, const struct call *call, struct err
     const struct session *session = sessions_find((struct sessions *)&server->sessions, call->session);
     if (!call->method->control || (session && session->role == ROLE_CONTROL))
         return true;
-    return error_set(err, ERROR_USAGE, "token", "%s needs a control token; this connection has a view token", call->method->name);
+    return error_set(err, ERROR_USAGE, "token", "this connection has a view token; for %s a control token is accepted",
+                     call->method->name);
 }
 
 static enum outcome run_method(struct server *server, struct call *call, json_t **result, struct error *err)
