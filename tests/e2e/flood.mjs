@@ -81,6 +81,7 @@ console.log(`another client: ${alone.fps.toFixed(1)} frames/s alone, ${beside.fp
 // A client that stops reading, but not writing, in the midst of it.
 const before = rss(), samples = [];
 flooder.socket.pause();
+await sleep(100); // what node had read already comes out still
 const stuckAt = sent, framesBefore = flooder.frames;
 let end = performance.now() + seconds * 1000, rendered = 0;
 const steering = (async () => {
