@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/job_pool.h"
 #include "stage.h"
+#include "reference/oracle.h"
 #include "trace/tracer.h"
 
 void comparison_finish(struct comparison *c)
@@ -286,7 +287,6 @@ static bool measure_lists(const struct truth *t, const struct stretch *whole, st
         const struct reference_progress report = {report_stretch, &stretch};
         if (!list_reading_measure(&c->lists[i], t->tracer, t->stage->pool, &report))
             return error_set(err, ERROR_TRY_AGAIN, NULL, "counting the lists was stopped early, or memory is out for it");
-        list_reading_finish(&c->lists[i]);
     }
     return true;
 }
@@ -340,4 +340,53 @@ bool comparison_trace(const struct stage *stage, const struct against *against, 
                       struct comparison *c, struct error *err)
 {
     return compute_truth(stage, against, progress, c, err) && measure(c, err);
+}
+
+/* One light's share: what such lists would have made of it, in place of what was tested. */
+static bool add_oracle(const struct truth *t, const struct comparison *c, size_t light, unsigned length,
+                       const struct reference_progress *progress, float *visibility, struct metrics_pool *pool)
+{
+    struct metrics m;
+    const struct list_reading *lists = &c->lists[light];
+    const struct oracle_input in = {.maps = lists->fit.maps,
+                                    .map_count = lists->fit.map_count,
+                                    .casters = lists->fit.casters,
+                                    .caster_count = lists->fit.caster_count,
+                                    .length = length,
+                                    .view = &t->view,
+                                    .light = &t->stage->settings.lights[light],
+                                    .ids = c->ids,
+                                    .receiver = c->receiver[light]};
+    const struct metrics_input measured = {.width = c->width,
+                                           .height = c->height,
+                                           .visibility = visibility,
+                                           .reference = c->truth[light],
+                                           .receiver = c->receiver[light],
+                                           .one_triangle = c->one_triangle,
+                                           .wrong_samples = -1};
+    return oracle_visibility(t->stage->scene, t->tracer, &in, t->stage->pool, progress, visibility) &&
+           metrics_pool_add(pool, &measured, &m);
+}
+
+bool comparison_oracle(const struct stage *stage, const struct against *against, unsigned length,
+                       const struct reference_progress *progress, const struct comparison *c, struct metrics *out,
+                       struct error *err)
+{
+    struct metrics_pool pool;
+    struct truth t = {.stage = stage, .against = against, .view = view_from_camera(&stage->settings.camera, c->width, c->height)};
+    float *visibility = malloc((size_t)c->width * c->height * sizeof *visibility);
+    if (visibility)
+        t.tracer = tracer_create(stage->scene, job_pool_threads(stage->pool), err);
+    bool good = t.tracer != NULL;
+    metrics_pool_init(&pool);
+    for (size_t i = 0; good && i < c->light_count; i++) {
+        struct stretch stretch = {progress, (double)i / (double)c->light_count, 1.0 / (double)c->light_count};
+        const struct reference_progress report = {report_stretch, &stretch};
+        good = !c->lists[i].given || add_oracle(&t, c, i, length, &report, visibility, &pool);
+    }
+    *out = pool.total;
+    metrics_pool_finish(&pool);
+    truth_finish(&t);
+    free(visibility);
+    return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the oracle was stopped early, or memory is out for it");
 }

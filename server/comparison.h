@@ -43,4 +43,9 @@ bool comparison_render(struct stage *stage, const struct against *against, struc
 /* The rest: traces the reference and measures. Any thread; the stage's renderer is not used. `progress` may be NULL. */
 bool comparison_trace(const struct stage *stage, const struct against *against, const struct reference_progress *progress,
                       struct comparison *c, struct error *err);
+/* After that: the errors that lists of the `length` (1..ORACLE_LENGTH_MAX) most visible triangles a texel would have made, over the lights whose
+ * system has lists; receivers 0 where there is none (reference/oracle.h). Any thread. */
+bool comparison_oracle(const struct stage *stage, const struct against *against, unsigned length,
+                       const struct reference_progress *progress, const struct comparison *c, struct metrics *out,
+                       struct error *err);
 void comparison_finish(struct comparison *c);

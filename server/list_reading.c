@@ -24,6 +24,13 @@ bool list_reading_take(struct stage *stage, unsigned light, struct list_reading 
     return true;
 }
 
+static void drop_lists(struct list_reading *reading)
+{
+    free(reading->lists.first);
+    free(reading->lists.triangles);
+    reading->lists = (struct shadow_lists){0};
+}
+
 bool list_reading_measure(struct list_reading *reading, const struct tracer *tracer, struct job_pool *pool,
                           const struct reference_progress *progress)
 {
@@ -36,15 +43,15 @@ bool list_reading_measure(struct list_reading *reading, const struct tracer *tra
                                         .triangles = reading->lists.triangles,
                                         .casters = reading->fit.casters,
                                         .caster_count = reading->fit.caster_count};
-    return identified_measure(tracer, &in, pool, progress, &reading->result);
+    bool good = identified_measure(tracer, &in, pool, progress, &reading->result);
+    drop_lists(reading);
+    return good;
 }
 
 void list_reading_finish(struct list_reading *reading)
 {
-    free(reading->lists.first);
-    free(reading->lists.triangles);
+    drop_lists(reading);
     free(reading->casters);
-    reading->lists = (struct shadow_lists){0};
     reading->fit = (struct shadow_fit){0};
     reading->casters = NULL;
 }

@@ -21,8 +21,8 @@ struct list_reading {
 /* Of the stage's last frame, on the renderer's thread. True with `given` unset where the system has no lists. The caller finishes `out`,
  * whatever this returns. */
 bool list_reading_take(struct stage *stage, unsigned light, struct list_reading *out, struct error *err);
-/* Any thread. False when stopped early or memory is out. */
+/* Any thread. Frees the lists themselves. False when stopped early or memory is out. */
 bool list_reading_measure(struct list_reading *reading, const struct tracer *tracer, struct job_pool *pool,
                           const struct reference_progress *progress);
-/* Frees the lists; `given` and `result` stay. */
+/* `given` and `result` stay. */
 void list_reading_finish(struct list_reading *reading);

@@ -93,7 +93,7 @@ static void measure_chunk(void *context, size_t index, unsigned worker)
     }
     if (count == 0)
         return;
-    tracer_light_ids(r->tracer, views, count, r->in->casters, r->in->caster_count, ids);
+    tracer_light_ids(r->tracer, views, count, r->in->casters, r->in->caster_count, NULL, ids);
     for (size_t i = 0; i < count; i++)
         r->drawn[at[i]] = measure_texel(r->in, texels[i], ids + i * RAYS);
 }

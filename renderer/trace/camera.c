@@ -118,15 +118,20 @@ void tracer_light(const struct tracer *t, const struct view *view, const uint32_
 }
 
 void tracer_light_ids(const struct tracer *t, const struct view *views, size_t count, const uint32_t *casters,
-                      size_t caster_count, uint32_t *ids)
+                      size_t caster_count, float *depths, uint32_t *ids)
 {
     RTCScene tree = tree_of_casters(t, casters, caster_count);
     for (size_t i = 0; i < count; i++) {
-        struct light_job job = {
-            .tracer = t, .tree = tree ? tree : t->all, .view = &views[i], .frame = ray_frame_make(&views[i]), .ids = ids};
+        struct light_job job = {.tracer = t,
+                                .tree = tree ? tree : t->all,
+                                .view = &views[i],
+                                .frame = ray_frame_make(&views[i]),
+                                .depths = depths,
+                                .ids = ids};
         job.offsets = ray_offsets_pixels(&job.frame);
         for (size_t tile = 0; tile < tile_count(&views[i]); tile++)
             light_tile(&job, tile, 0);
         ids += (size_t)views[i].width * views[i].height;
+        depths = depths ? depths + (size_t)views[i].width * views[i].height : NULL;
     }
 }

@@ -30,10 +30,10 @@ void tracer_camera(const struct tracer *t, const struct view *view, struct job_p
 void tracer_light(const struct tracer *t, const struct view *view, const uint32_t *casters, size_t caster_count,
                   struct job_pool *pool, float *depths, uint32_t *ids);
 
-/* The ids of tracer_light() for `count` small views of one size, one after the other on the calling thread: for callers that are jobs
- * themselves. ids: count * width * height. */
+/* tracer_light() for `count` small views of one size, one after the other on the calling thread: for callers that are jobs
+ * themselves. depths (may be NULL) and ids: count * width * height. */
 void tracer_light_ids(const struct tracer *t, const struct view *views, size_t count, const uint32_t *casters,
-                      size_t caster_count, uint32_t *ids);
+                      size_t caster_count, float *depths, uint32_t *ids);
 
 /* The speed baseline. Ids as tracer_camera() wrote them; visibility: 1 lit, 0 shadowed or no receiver. */
 void tracer_shadow_point(const struct tracer *t, const struct view *view, const struct light *light, const uint32_t *ids,

@@ -17,6 +17,7 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
+#include "reference/oracle.h"
 #include "stage.h"
 
 struct compare_options {
@@ -27,6 +28,7 @@ struct compare_options {
     const char *json; /* NULL: none */
     bool flicker[FLICKER_MOTIONS];
     unsigned flicker_frames;
+    unsigned oracle; /* length of its lists; 0: not wanted */
 };
 
 static bool set_against(void *target, const char *value, struct error *err)
@@ -69,12 +71,23 @@ static bool set_frames(void *target, const char *value, struct error *err)
     return true;
 }
 
+static bool set_oracle(void *target, const char *value, struct error *err)
+{
+    unsigned long n;
+    if (!number_parse_unsigned(value, 1, ORACLE_LENGTH_MAX, &n))
+        return error_set(err, ERROR_USAGE, "oracle", "lists of 1 to %d triangles are accepted", ORACLE_LENGTH_MAX);
+    ((struct compare_options *)target)->oracle = (unsigned)n;
+    return true;
+}
+
 static const struct option option_table[] = {
     {"against", "REF", "point, samples32, arealight[:radius=R,rays=N] or an algorithm (default point)", set_against},
     {"o", "DIFF", "picture of the differences; .png, .jpg, .webp or .exr; - is standard output, as PNG", set_picture},
     {"json", "FILE", "times, memory and error figures as JSON; - is standard output", set_json},
     {"flicker", "light|camera", "measure flicker too while these turn by 0.05 degrees a frame; may be given for both",
      set_flicker},
+    {"oracle", "N", "systems with lists: also what lists of the N most visible triangles of each texel would get wrong",
+     set_oracle},
     {"frames", "N", "frames of --flicker, 3 to 10000 (default 16)", set_frames},
     {0},
 };
@@ -203,6 +216,31 @@ static void print_flicker(const struct flicker_figures *figures)
                    figures[i].reference, figures[i].difference);
 }
 
+/* Beside the figures, or to people. */
+static bool add_oracle(const struct compare_options *o, const struct stage *stage, const struct comparison *c, json_t *figures,
+                       struct error *err)
+{
+    struct metrics m;
+    struct progress progress;
+    if (!o->oracle)
+        return true;
+    progress_init(&progress, "asking the oracle", o->common.quiet);
+    const struct reference_progress report = {report_progress, &progress};
+    bool good = comparison_oracle(stage, &o->against, o->oracle, &report, c, &m, err);
+    progress_finish(&progress);
+    if (!good || m.receivers == 0)
+        return good;
+    if (figures) {
+        json_t *object = figures_errors(&m);
+        json_object_set_new(object, "length", json_integer((json_int_t)o->oracle));
+        json_object_set_new(figures, "oracle", object);
+    } else {
+        printf("lists of the %u most visible triangles of each texel: %llu misclassified, %.6f of the receivers\n", o->oracle,
+               (unsigned long long)m.misclassified, m.misclassified_fraction);
+    }
+    return true;
+}
+
 /* The table for people, unless standard output carries something else. */
 static bool write_results(const struct compare_options *o, const struct stage *stage, const struct comparison *c,
                           const struct flicker_figures *flicker, json_t **figures, struct error *err)
@@ -236,7 +274,8 @@ static bool compare(const struct compare_options *o, struct stage *stage, struct
     const struct reference_progress report = {report_progress, &progress};
     bool good = comparison_render(stage, &o->against, &c, err) && comparison_trace(stage, &o->against, &report, &c, err);
     progress_finish(&progress);
-    good = good && measure_flicker(o, stage, flicker, err) && write_results(o, stage, &c, flicker, &figures, err);
+    good = good && add_oracle(o, stage, &c, figures, err) && measure_flicker(o, stage, flicker, err) &&
+           write_results(o, stage, &c, flicker, &figures, err);
     json_decref(figures);
     comparison_finish(&c);
     return good;

@@ -45,6 +45,7 @@ bad 64 'needs --algorithm' compare builtin:box
 bad 64 'exclude each other' render builtin:box -o "$work/a.png" --show difference --progressive 3
 bad 64 'difference' serve --listen 127.0.0.1:0 --show difference
 bad 64 '1 to 100000 frames' render builtin:box -o "$work/a.png" --progressive 0
+bad 64 'lists of 1 to 64' compare builtin:box --algorithm none --oracle 0
 bad 64 'light or camera' compare builtin:box --algorithm none --flicker sun
 bad 64 '3 to 10000 frames' compare builtin:box --algorithm none --flicker light --frames 2
 bad 64 'against point and samples32 only' compare builtin:box --algorithm none --against sm --flicker light
