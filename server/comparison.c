@@ -20,6 +20,8 @@ void comparison_finish(struct comparison *c)
         free(c->masks[i].receivers);
         free(c->masks[i].lit);
         list_reading_finish(&c->lists[i]);
+        free(c->truth_masks[i].receivers);
+        free(c->truth_masks[i].lit);
     }
     free(c->ids);
     free(c->one_triangle);
@@ -94,7 +96,7 @@ static bool read_what_it_tells(struct stage *stage, const struct against *agains
         c->figure_count[i] = renderer_read_figures(stage->uploaded, i, c->figures[i]);
         if (against->kind == AGAINST_SAMPLES32 && !read_masks(stage, i, c, err))
             return false;
-        if (!list_reading_take(stage, i, &c->lists[i], err))
+        if (!c->without_lists && !list_reading_take(stage, i, &c->lists[i], err))
             return false;
     }
     return true;
@@ -206,10 +208,7 @@ static bool trace_samples32(const struct truth *t, size_t light, const struct re
         c->receiver[light][p] = facing > 0;
         c->truth[light][p] = facing ? (float)__builtin_popcount(lit[p]) / (float)facing : 0;
     }
-    if (good && c->masks[light].receivers)
-        c->wrong_samples[light] = metrics_wrong_samples(&c->masks[light], &(struct sample_masks){receivers, lit}, pixels);
-    free(receivers);
-    free(lit);
+    c->truth_masks[light] = (struct sample_masks){receivers, lit};
     return good;
 }
 
@@ -314,6 +313,8 @@ static bool measure(struct comparison *c, struct error *err)
     bool good = true;
     metrics_pool_init(&pool);
     for (size_t i = 0; good && i < c->light_count; i++) {
+        if (c->masks[i].receivers && c->truth_masks[i].receivers)
+            c->wrong_samples[i] = metrics_wrong_samples(&c->masks[i], &c->truth_masks[i], (size_t)c->width * c->height);
         const struct metrics_input input = {
             .width = c->width,
             .height = c->height,
@@ -389,4 +390,34 @@ bool comparison_oracle(const struct stage *stage, const struct against *against,
     truth_finish(&t);
     free(visibility);
     return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the oracle was stopped early, or memory is out for it");
+
+static void forget_tested(struct comparison *c)
+{
+    for (size_t i = 0; i < c->light_count; i++) {
+        free(c->masks[i].receivers);
+        free(c->masks[i].lit);
+        c->masks[i] = (struct sample_masks){0};
+        c->wrong_samples[i] = -1;
+        list_reading_finish(&c->lists[i]);
+        c->lists[i] = (struct list_reading){0};
+    }
+}
+
+static bool repeat_lists(const struct stage *stage, struct comparison *c, struct error *err)
+{
+    struct truth t = {.stage = stage};
+    struct stretch whole = {NULL, 0, 1};
+    if (!has_lists(c))
+        return true;
+    bool good = (t.tracer = tracer_create(stage->scene, job_pool_threads(stage->pool), err)) && measure_lists(&t, &whole, c, err);
+    truth_finish(&t);
+    return good;
+}
+
+bool comparison_repeat(struct stage *stage, const struct against *against, struct comparison *c, struct error *err)
+{
+    forget_tested(c);
+    /* They do not depend on the reference. */
+    c->without_lists = against->kind != AGAINST_POINT;
+    return render_tested(stage, against, c, err) && repeat_lists(stage, c, err) && measure(c, err);
 }

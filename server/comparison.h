@@ -23,10 +23,12 @@ struct comparison {
     uint8_t *receiver[RENDERER_LIGHTS_MAX];         /* 1 where the pixel counts */
     uint8_t *one_triangle;                          /* 1 where all 32 samples see the same triangle */
     struct sample_masks masks[RENDERER_LIGHTS_MAX]; /* tested, where the system decides each sample; else NULL */
+    struct sample_masks truth_masks[RENDERER_LIGHTS_MAX]; /* of samples32; else NULL */
     int64_t wrong_samples[RENDERER_LIGHTS_MAX];     /* against samples32, of systems with masks; else -1 */
     struct shadow_figure figures[RENDERER_LIGHTS_MAX][SHADOW_FIGURES_MAX]; /* what the system tells of itself */
     size_t figure_count[RENDERER_LIGHTS_MAX];
     struct list_reading lists[RENDERER_LIGHTS_MAX];
+    bool without_lists; /* they are not taken */
     unsigned converge_frames; /* how many the tested picture took ... */
     bool converged;           /* ... and whether that was enough */
     struct metrics light[RENDERER_LIGHTS_MAX];
@@ -48,4 +50,7 @@ bool comparison_trace(const struct stage *stage, const struct against *against, 
 bool comparison_oracle(const struct stage *stage, const struct against *against, unsigned length,
                        const struct reference_progress *progress, const struct comparison *c, struct metrics *out,
                        struct error *err);
+/* Another system against the truth that `c` holds already: the stage's settings may differ from those of comparison_render() in system and
+ * parameters only. Lists are taken against point alone. On the renderer's thread. */
+bool comparison_repeat(struct stage *stage, const struct against *against, struct comparison *c, struct error *err);
 void comparison_finish(struct comparison *c);

@@ -5,8 +5,7 @@
 #include "output.h"
 #include "stage.h"
 
-/* Members of `object`; null where there are no lists. */
-static void add_identified(json_t *object, bool given, const struct identified *m)
+void figures_add_identified(json_t *object, bool given, const struct identified *m)
 {
     double texels = (double)m->texels, seen = (double)m->seen;
     const struct {
@@ -30,7 +29,7 @@ static void add_identified_total(json_t *object, const struct comparison *c)
         given |= c->lists[i].given;
         identified_add(&total, &c->lists[i].result);
     }
-    add_identified(object, given, &total);
+    figures_add_identified(object, given, &total);
 }
 
 static json_t *light_rows(const struct stage *stage, const struct comparison *c)
@@ -42,7 +41,7 @@ static json_t *light_rows(const struct stage *stage, const struct comparison *c)
         json_t *told = figures_told(c->figures[i], c->figure_count[i]);
         if (told)
             json_object_set_new(row, "figures", told);
-        add_identified(row, c->lists[i].given, &c->lists[i].result);
+        figures_add_identified(row, c->lists[i].given, &c->lists[i].result);
         json_object_set_new(row, "light", json_integer((json_int_t)i));
         json_object_set_new(row, "name", json_text(light->name));
         json_object_set_new(row, "kind", json_string(light_kind_names[light->kind]));

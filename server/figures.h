@@ -8,6 +8,7 @@
 struct against;
 struct comparison;
 struct flicker_figures;
+struct identified;
 struct measurement;
 struct metrics;
 struct stage;
@@ -24,6 +25,9 @@ json_t *figures_errors(const struct metrics *metrics);
 
 /* What a system tells of itself: {name: value}; NULL where it tells nothing. */
 json_t *figures_told(const struct shadow_figure *figures, size_t count);
+
+/* The members identified_*, null where no lists were `given`. */
+void figures_add_identified(json_t *object, bool given, const struct identified *m);
 
 /* Adds what only a comparison has to figures_render()'s object. */
 void figures_add_comparison(json_t *figures, const struct against *against, const struct stage *stage,

@@ -7,6 +7,8 @@
 
 static const double SHOW_AFTER_S = 1.0; /* shorter work shows nothing */
 static const double REDRAW_S = 0.2;
+static const double LEFT_AFTER_S = 10; /* shorter work need not say how long it will take ... */
+static const double LEFT_FROM = 0.02;  /* ... and nobody knows before that much is done */
 enum { BAR_WIDTH = 40 };
 
 static double now(void)
@@ -14,6 +16,19 @@ static double now(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ", about 3 min left" where that can be told. */
+static void describe_left(const struct progress *p, char *out, size_t size)
+{
+    double taken = now() - p->started, left = taken / fmax(p->done, LEFT_FROM) * (1 - p->done);
+    out[0] = 0;
+    if (taken < LEFT_AFTER_S || p->done < LEFT_FROM)
+        return;
+    if (left < 90)
+        snprintf(out, size, ", about %.0f s left", ceil(left));
+    else
+        snprintf(out, size, ", about %.0f min left", ceil(left / 60));
 }
 
 static void draw(const struct progress *p)
@@ -25,7 +40,9 @@ static void draw(const struct progress *p)
         for (int i = 0; i < BAR_WIDTH; i++)
             bar[i] = i < (int)(p->done * BAR_WIDTH + 0.5) ? '=' : ' ';
         bar[BAR_WIDTH] = 0;
-        fprintf(stderr, "\r%s [%s] %3.0f %%\033[K", p->what, bar, floor(p->done * 100));
+        char left[40];
+        describe_left(p, left, sizeof left);
+        fprintf(stderr, "\r%s [%s] %3.0f %%%s\033[K", p->what, bar, floor(p->done * 100), left);
     }
     fflush(stderr);
 }

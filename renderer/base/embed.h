@@ -9,3 +9,4 @@ struct embedded_file {
 
 extern const struct embedded_file embedded_shaders[];
 extern const struct embedded_file embedded_web[];
+extern const struct embedded_file embedded_report[]; /* report.css of server/bench */

@@ -47,3 +47,23 @@ const char *model_label(const char *scene)
     const char *slash = strncmp(scene, "builtin:", 8) ? strrchr(scene, '/') : NULL;
     return slash ? slash + 1 : scene;
 }
+
+static bool ends_in(const char *text, const char *end)
+{
+    size_t n = strlen(text), m = strlen(end);
+    return n >= m && !strcmp(text + n - m, end);
+}
+
+bool model_is(const char *name, const char *scene)
+{
+    for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
+        const struct model *m = &models[i];
+        if (strcmp(m->name, name))
+            continue;
+        for (int f = 0; m->files[f]; f++)
+            if (ends_in(scene, m->files[f]))
+                return true;
+        return !strcmp(scene, m->builtin) || !strcmp(scene, m->quick);
+    }
+    return !strcmp(name, scene);
+}

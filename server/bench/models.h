@@ -11,3 +11,6 @@ bool model_resolve(const char *name, const char *folder, bool quick, char *out, 
 
 /* What a report calls a scene: a path's last part, with the built-in ones as they are. */
 const char *model_label(const char *scene);
+
+/* Whether `scene` is what some folder's or the built-in model of that name would resolve to. */
+bool model_is(const char *name, const char *scene);

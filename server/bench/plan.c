@@ -10,7 +10,7 @@
 #include "models.h"
 
 const char *const bench_regime_names[REGIME_COUNT] = {"still", "moving"};
-const char *const bench_reference_names[BENCH_REFERENCES] = {"point", "samples32"};
+const char *const bench_reference_names[BENCH_REFERENCES] = {"point", "samples32", "arealight"};
 
 enum { MAP_SIZE_DEFAULT = 1024 }; /* what systems without the parameter are timed beside */
 enum { QUICK_WIDTH = 480, QUICK_HEIGHT = 270, QUICK_FRAMES = 4, QUICK_MAP_SIZE = 2048 };
@@ -19,8 +19,8 @@ enum { QUICK_WIDTH = 480, QUICK_HEIGHT = 270, QUICK_FRAMES = 4, QUICK_MAP_SIZE =
 struct builder {
     struct bench_plan *plan;
     const struct bench_options *options;
-    const struct bench_table *table;
-    unsigned table_index;
+    uint32_t table, figure; /* one bit in one of them */
+    unsigned measures;
     struct error *err;
 };
 
@@ -90,16 +90,18 @@ static bool add_cell(struct builder *b, const struct bench_setup *setup, const c
         struct bench_cell *cell = &b->plan->cells.data[i];
         if (cell->setup != index || !same_algorithm(cell, system, params))
             continue;
-        cell->tables |= 1u << b->table_index;
-        cell->measures |= b->table->measures;
+        cell->tables |= b->table;
+        cell->figures |= b->figure;
+        cell->measures |= b->measures;
         return true;
     }
     struct bench_cell cell = {.setup = index,
-                              .tables = 1u << b->table_index,
+                              .tables = b->table,
+                              .figures = b->figure,
                               .system = system,
                               .params = *params,
                               .map_size = map_size(system, params),
-                              .measures = b->table->measures};
+                              .measures = b->measures};
     snprintf(cell.name, sizeof cell.name, "%s", name);
     return array_push(&b->plan->cells, cell) || memory_out(b->err);
 }
@@ -139,9 +141,9 @@ static bool add_all_systems(struct builder *b, const struct bench_setup *setup, 
     return true;
 }
 
-static bool add_algorithms(struct builder *b, const struct bench_setup *setup)
+static bool add_algorithms(struct builder *b, const struct bench_setup *setup, const char *const *names)
 {
-    for (const char *const *name = b->table->algorithms; *name; name++)
+    for (const char *const *name = names; *name; name++)
         if (!((*name)[0] == '*' ? add_all_systems(b, setup, *name) : add_algorithm(b, setup, *name)))
             return false;
     return true;
@@ -153,21 +155,21 @@ static uint32_t scaled(uint32_t side, double by)
     return s < 1 ? 1 : s > RENDERER_SIZE_MAX ? RENDERER_SIZE_MAX : (uint32_t)s;
 }
 
-static bool add_scene(struct builder *b, const char *scene)
+static bool add_scene(struct builder *b, const struct bench_table *table, const char *scene)
 {
     static const double whole[] = {1, 0};
     static const unsigned own[] = {0, 0};
-    const double *sizes = b->table->sizes ? b->table->sizes : whole;
-    double size = b->table->size > 0 ? b->table->size : 1;
+    const double *sizes = table->sizes ? table->sizes : whole;
+    double size = table->size > 0 ? table->size : 1;
     for (; *sizes > 0; sizes++) {
-        const unsigned *lights = b->table->lights ? b->table->lights : own;
+        const unsigned *lights = table->lights ? table->lights : own;
         do {
             struct bench_setup setup = {.lights = *lights};
             setup.width = scaled(b->plan->width, size * *sizes);
             setup.height = scaled(b->plan->height, size * *sizes);
             if (!model_resolve(scene, b->options->models, b->options->quick, setup.scene, sizeof setup.scene))
                 return error_set(b->err, ERROR_USAGE, "models", "the path of %.40s in the folder of models is too long", scene);
-            if (!add_algorithms(b, &setup))
+            if (!add_algorithms(b, &setup, table->algorithms))
                 return false;
         } while (*lights && *++lights);
     }
@@ -175,29 +177,58 @@ static bool add_scene(struct builder *b, const char *scene)
 }
 
 /* "builtin:hard-*" */
-static bool add_builtins(struct builder *b, const char *pattern)
+static bool add_builtins(struct builder *b, const struct bench_table *table, const char *pattern)
 {
     size_t length = strlen(pattern) - strlen("builtin:") - 1;
     const char *prefix = pattern + strlen("builtin:");
     for (size_t i = 0; i < builtin_count; i++) {
         char name[120];
         snprintf(name, sizeof name, "builtin:%s", builtin_list[i]->name);
-        if (!strncmp(builtin_list[i]->name, prefix, length) && !add_scene(b, name))
+        if (!strncmp(builtin_list[i]->name, prefix, length) && !add_scene(b, table, name))
             return false;
     }
     return true;
 }
 
-static bool add_table(struct builder *b)
+static bool add_table(struct builder *b, const struct bench_table *table)
 {
     char sentence[300];
-    if (b->options->quick && b->table->heavy) {
-        snprintf(sentence, sizeof sentence, "--quick leaves out \"%s\": %s", b->table->title, b->table->heavy);
+    if (b->options->quick && table->heavy) {
+        snprintf(sentence, sizeof sentence, "--quick leaves out \"%s\": %s", table->title, table->heavy);
         return leave_out(b->plan, sentence) || memory_out(b->err);
     }
-    for (const char *const *scene = b->table->scenes; *scene; scene++) {
+    for (const char *const *scene = table->scenes; *scene; scene++) {
         bool pattern = (*scene)[strlen(*scene) - 1] == '*';
-        if (!(pattern ? add_builtins(b, *scene) : add_scene(b, *scene)))
+        if (!(pattern ? add_builtins(b, table, *scene) : add_scene(b, table, *scene)))
+            return false;
+    }
+    return true;
+}
+
+static bool add_figure(struct builder *b, const struct bench_figure *figure)
+{
+    struct bench_setup setup = {.width = b->plan->width, .height = b->plan->height};
+    const char *models = b->options->builtin_pictures ? NULL : b->options->models;
+    if (!model_resolve(figure->scene, models, b->options->quick, setup.scene, sizeof setup.scene))
+        return error_set(b->err, ERROR_USAGE, "models", "the path of %.40s in the folder of models is too long", figure->scene);
+    return add_algorithms(b, &setup, figure->algorithms);
+}
+
+static bool add_everything(struct bench_plan *plan, const struct bench_options *options, struct error *err)
+{
+    const struct bench_suite *suite = options->suite;
+    for (unsigned i = 0; suite->tables[i]; i++) {
+        struct builder b = {.plan = plan, .options = options, .err = err};
+        b.table = 1u << i;
+        b.measures = suite->tables[i]->measures;
+        if (!add_table(&b, suite->tables[i]))
+            return false;
+    }
+    for (unsigned i = 0; options->pictures && suite->figures && suite->figures[i]; i++) {
+        struct builder b = {.plan = plan, .options = options, .err = err};
+        b.figure = 1u << i;
+        b.measures = MEASURE_POINT;
+        if (!add_figure(&b, suite->figures[i]))
             return false;
     }
     return true;
@@ -262,11 +293,8 @@ bool bench_plan_init(struct bench_plan *plan, const struct bench_options *option
     plan->width = options->width ? options->width : small ? QUICK_WIDTH : suite->width;
     plan->height = options->height ? options->height : small ? QUICK_HEIGHT : suite->height;
     plan->frames = options->frames ? options->frames : frames;
-    for (unsigned i = 0; suite->tables[i]; i++) {
-        struct builder b = {plan, options, suite->tables[i], i, err};
-        if (!add_table(&b))
-            return false;
-    }
+    if (!add_everything(plan, options, err))
+        return false;
     if (plan->cells.count == 0)
         return error_set(err, ERROR_USAGE, "filter",
                          "nothing in the suite has that in its scene or algorithm; without --filter all is run");
@@ -323,6 +351,11 @@ const struct bench_cell *bench_baseline(const struct bench_plan *plan, const str
             return c;
     }
     return NULL;
+}
+
+double bench_identified_fraction(const struct bench_cell *cell)
+{
+    return cell->has_lists && cell->lists.texels ? cell->lists.fractions / (double)cell->lists.texels : NAN;
 }
 
 int64_t bench_best_misclassified(const struct bench_plan *plan, const struct bench_cell *cell, const char *system)

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/array.h"
+#include "reference/identified.h"
 #include "reference/metrics.h"
 #include "renderer.h"
 #include "suite.h"
@@ -21,10 +22,12 @@ struct bench_options {
     unsigned frames;    /* 0: the suite's */
     uint32_t width, height; /* 0: the suite's */
     bool quick;
+    bool pictures;         /* the suite's figures too */
+    bool builtin_pictures; /* of built-in scenes, whatever `models` holds: for what is published */
 };
 
 enum { REGIME_STILL, REGIME_MOVING, REGIME_COUNT };
-enum { AGAINST_POINT_INDEX, AGAINST_SAMPLES32_INDEX, BENCH_REFERENCES };
+enum { AGAINST_POINT_INDEX, AGAINST_SAMPLES32_INDEX, AGAINST_AREALIGHT_INDEX, BENCH_REFERENCES };
 
 extern const char *const bench_regime_names[REGIME_COUNT];
 extern const char *const bench_reference_names[BENCH_REFERENCES];
@@ -56,8 +59,9 @@ struct bench_errors {
 /* One algorithm in one setup: what the tables show. */
 struct bench_cell {
     size_t setup;
-    uint32_t tables; /* bit i: the suite's table i shows it */
-    char name[160];  /* as the suite writes it */
+    uint32_t tables;  /* bit i: the suite's table i shows it */
+    uint32_t figures; /* likewise */
+    char name[160];   /* as the suite writes it */
     const struct shadow_system *system;
     struct shadow_params params;
     unsigned map_size; /* 0: the system has no such parameter; cells of one size are timed together */
@@ -69,6 +73,8 @@ struct bench_cell {
     struct bench_times times[REGIME_COUNT];
     struct bench_errors errors[BENCH_REFERENCES];
     size_t shadow_bytes, map_count;
+    bool has_lists;
+    struct identified lists; /* of all lights */
 };
 
 struct bench_plan {
@@ -97,6 +103,9 @@ const char *bench_cell_baseline_name(const struct bench_plan *plan, const struct
 /* The cell of `system`, its parameters at their defaults but for the map size, in the same setup and of the same map size. NULL: none, or it is
  * the cell itself. */
 const struct bench_cell *bench_baseline(const struct bench_plan *plan, const struct bench_cell *cell, const char *system);
+
+/* The mean share of a texel's seen triangles that its list holds; NAN: no lists. */
+double bench_identified_fraction(const struct bench_cell *cell);
 
 /* The least misclassified against point over the cells of `system` in the same setup and map size; -1: not measured. */
 int64_t bench_best_misclassified(const struct bench_plan *plan, const struct bench_cell *cell, const char *system);

@@ -9,6 +9,7 @@
 #include "clock.h"
 #include "common_options.h"
 #include "interruption.h"
+#include "pictures.h"
 #include "progress.h"
 #include "stage.h"
 
@@ -19,6 +20,9 @@ struct run {
     struct progress *progress;
     struct stage stage; /* one renderer; the scene changes */
     const char *loaded; /* the scene in it, NULL: none */
+    struct bench_truth truths[BENCH_REFERENCES];
+    size_t truths_of; /* the setup; SIZE_MAX: none */
+    struct bench_shots shots;
     double done_s, total_s;
 };
 
@@ -78,6 +82,14 @@ static bool set_up(struct run *run, struct bench_setup *setup, struct error *err
     return run->stage.uploaded != NULL;
 }
 
+static void keep_truths_of(struct run *run, size_t setup)
+{
+    if (run->truths_of == setup)
+        return;
+    bench_truths_finish(run->truths);
+    run->truths_of = setup;
+}
+
 /* False: interrupted. */
 static bool run_batch(struct run *run, size_t first, size_t end)
 {
@@ -87,11 +99,14 @@ static bool run_batch(struct run *run, size_t first, size_t end)
         .cells = plan->cells.data + first,
         .count = end - first,
         .stage = &run->stage,
+        .truths = run->truths,
+        .shots = &run->shots,
         .interruption = run->interruption,
         .pace = {advance, run},
     };
     struct bench_setup *setup = &plan->setups.data[batch.cells[0].setup];
     struct error err = {0};
+    keep_truths_of(run, batch.cells[0].setup);
     if (set_up(run, setup, &err))
         return batch_run(&batch);
     snprintf(setup->failed, sizeof setup->failed, "%s", err.message);
@@ -134,7 +149,8 @@ static bool open_device(struct run *run, struct error *err)
 bool bench_run(struct bench_report *report, const struct common_options *common, struct interruption *interruption,
                struct progress *progress, struct error *err)
 {
-    struct run run = {report, common, interruption, progress, .total_s = bench_plan_seconds(&report->plan)};
+    struct run run = {
+        report, common, interruption, progress, .truths_of = SIZE_MAX, .total_s = bench_plan_seconds(&report->plan)};
     uint64_t start = clock_us();
     report->started = time(NULL);
     bool good = open_device(&run, err), go_on = good;
@@ -144,6 +160,9 @@ bool bench_run(struct bench_report *report, const struct common_options *common,
         first = end;
     }
     report->interrupted = good && !go_on;
+    bench_pictures_make(report, &run.shots);
+    bench_shots_finish(&run.shots);
+    bench_truths_finish(run.truths);
     report->seconds = 1e-6 * (double)(clock_us() - start);
     stage_finish(&run.stage);
     return good;

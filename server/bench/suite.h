@@ -10,6 +10,7 @@ enum bench_measure {
     MEASURE_PASSES = 4,     /* both again with a finish after each pass */
     MEASURE_POINT = 8,      /* error against point */
     MEASURE_SAMPLES32 = 16, /* error against samples32 */
+    MEASURE_AREALIGHT = 32, /* error against arealight */
 };
 
 enum table_shape {
@@ -49,8 +50,8 @@ enum figure_kind {
 struct bench_figure {
     const char *name, *title, *note;
     enum figure_kind kind;
-    const char *scene;
-    const char *const *algorithms;
+    const char *scene;             /* as in a table */
+    const char *const *algorithms; /* ended by NULL */
 };
 
 /* Of the targets that the project set itself: subject against object. */

@@ -73,6 +73,7 @@ static json_t *cell_json(const struct bench_plan *plan, const struct bench_cell 
     for (int e = 0; e < BENCH_REFERENCES; e++)
         json_object_set_new(object, bench_reference_names[e],
                             cell->errors[e].measured ? figures_errors(&cell->errors[e].m) : json_null());
+    figures_add_identified(object, cell->has_lists, &cell->lists);
     json_object_set_new(object, "failed", cell->failed[0] ? json_text(cell->failed) : json_null());
     json_object_set_new(object, "done", json_boolean(cell->started));
     return object;

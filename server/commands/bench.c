@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -40,6 +41,30 @@ static bool set_json(void *target, const char *value, struct error *err)
     (void)err;
     ((struct bench_command *)target)->json = value;
     return true;
+}
+
+static bool set_csv(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct bench_command *)target)->csv = value;
+    return true;
+}
+
+static bool set_html(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct bench_command *)target)->html = value;
+    return true;
+}
+
+static bool set_pictures(void *target, const char *value, struct error *err)
+{
+    static const char *const names[] = {"models", "builtin", "none", NULL};
+    struct bench_command *c = target;
+    int index = name_index(names, value);
+    c->bench.pictures = index != 2;
+    c->bench.builtin_pictures = index == 1;
+    return index >= 0 || error_set(err, ERROR_USAGE, "pictures", "models, builtin or none are accepted");
 }
 
 static bool set_models(void *target, const char *value, struct error *err)
@@ -101,12 +126,15 @@ static bool set_log_level(void *target, const char *value, struct error *err)
 static const struct option option_table[] = {
     {"suite", "NAME", "smoke, paper, hard or full (default smoke)", set_suite},
     {"json", "FILE", "every figure as JSON; - is standard output", set_json},
+    {"csv", "FILE", "a line for each cell; - is standard output", set_csv},
+    {"html", "FILE", "the report: one page that needs nothing else; - is standard output", set_html},
     {"filter", "WORDS", "only what has each of the words (separated by commas) in its scene's or algorithm's name", set_filter},
     {"frames", "N", "timed frames of each cell, 1 to 1000; slow ones get fewer (default: the suite's)", set_frames},
     {"size", "WxH", "picture size (default: the suite's)", set_size},
     {"quick", NULL, "small pictures, few frames, light models, no maps over 2048: a first look", set_quick},
     {"models", "DIR", "folder of the models of the paper (default " MODELS_DEFAULT " where it exists, else built-in ones)",
      set_models},
+    {"pictures", "OF", "the suite's figures of the models (default), of built-in scenes only (builtin), or none", set_pictures},
     {"threads", "N", "1 to 256 (default: SLURM_CPUS_PER_TASK, else the cores allowed)", set_threads},
     {"device", "DEVICE", "index of gnomon list devices, DRM node, or software", set_device},
     {"quiet", NULL, "no progress bar", set_quiet},
@@ -116,13 +144,15 @@ static const struct option option_table[] = {
 
 static const struct syntax syntax = {
     .command = "bench",
-    .usage = "[--suite smoke|paper|hard|full] [--json FILE] [options]",
+    .usage = "[--suite smoke|paper|hard|full] [--json FILE] [--csv FILE] [--html FILE] [options]",
     .summary = "Measures what the shadow systems cost and how wrong they are, side by side.",
     .options = option_table,
     .notes =
         "The algorithms of a scene are timed in turns (A B C A B C), so that a machine that slows down slows all of them. Ctrl-C ends a\n"
         "run early: what was measured until then is written. Tables go to standard output unless a file is -.\n",
     .examples = "  gnomon bench\n"
+                "  gnomon bench --suite paper --quick --html report.html\n"
+                "  gnomon bench --suite full --html report.html --json report.json --csv report.csv\n"
                 "  gnomon bench --suite smoke --filter sm --json -\n",
 };
 
@@ -142,9 +172,28 @@ static bool check_outputs(const struct bench_command *c, struct error *err)
 
 static bool is_stdout(const char *path) { return path && !strcmp(path, "-"); }
 
+/* To a file, or to standard output. */
+static bool write_with(void (*write)(const struct bench_report *report, FILE *out), const char *path,
+                       const struct bench_report *report, struct error *err)
+{
+    errno = 0;
+    FILE *out = is_stdout(path) ? stdout : fopen(path, "w");
+    if (out)
+        write(report, out);
+    bool good = out && fflush(out) == 0 && !ferror(out);
+    int why = errno;
+    if (out && out != stdout && fclose(out) != 0 && good) {
+        good = false;
+        why = errno;
+    }
+    return good || error_set(err, ERROR_IO, NULL, "cannot write %s: %s", path, why ? strerror(why) : "write error");
+}
+
 static bool write_all(const struct bench_command *c, const struct bench_report *report, struct error *err)
 {
     if (c->json && !output_json(c->json, bench_json(report), err))
+        return false;
+    if ((c->csv && !write_with(bench_csv, c->csv, report, err)) || (c->html && !write_with(bench_html, c->html, report, err)))
         return false;
     if (is_stdout(c->json) || is_stdout(c->csv) || is_stdout(c->html))
         return true;
@@ -156,7 +205,7 @@ static void join_command(int argc, char **argv, char *out, size_t size)
 {
     size_t used = (size_t)snprintf(out, size, "gnomon");
     for (int i = 0; i < argc && used < size; i++)
-        used += (size_t)snprintf(out + used, size - used, strpbrk(argv[i], " '\"*") ? " '%s'" : " %s", argv[i]);
+        used += (size_t)snprintf(out + used, size - used, !*argv[i] || strpbrk(argv[i], " '\"*") ? " '%s'" : " %s", argv[i]);
 }
 
 static size_t count_started(const struct bench_plan *plan)
@@ -189,7 +238,7 @@ static bool run(const struct bench_command *c, struct bench_report *report, stru
 
 int command_bench(int argc, char **argv)
 {
-    struct bench_command command = {.bench.suite = bench_suites[0]};
+    struct bench_command command = {.bench = {.suite = bench_suites[0], .pictures = true}};
     struct bench_report report = {0};
     struct error err = {0};
     common_options_init(&command.common);
