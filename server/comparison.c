@@ -390,6 +390,7 @@ bool comparison_oracle(const struct stage *stage, const struct against *against,
     truth_finish(&t);
     free(visibility);
     return good || error_set(err, ERROR_TRY_AGAIN, NULL, "the oracle was stopped early, or memory is out for it");
+}
 
 static void forget_tested(struct comparison *c)
 {
