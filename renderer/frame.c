@@ -59,9 +59,10 @@ static bool bind_light(struct renderer *r, const struct shadow_input *in, size_t
 
 static bool traces_maps(const struct render_scene *s, const struct render_settings *settings)
 {
-    if (!(settings->system->flags & SHADOW_USES_MAPS))
+    if (!(settings->system->flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT)))
         return false;
-    double side = settings->params.value[shadow_param_index(settings->system, "size")];
+    int size = shadow_param_index(settings->system, "size");
+    double side = size >= 0 ? settings->params.value[size] : SHADOW_FIT_SIDE;
     return settings->map_pass == CAMERA_PASS_AUTO ? producer_traces_map(&s->draw, (size_t)(side * side))
                                                   : settings->map_pass == CAMERA_PASS_TRACED;
 }

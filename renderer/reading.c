@@ -33,7 +33,7 @@ static struct shadow_input input_of(struct render_scene *s, unsigned light)
     in.light = &state->light;
     in.light_index = light;
     in.viewer = state->viewer;
-    in.fit = state->system->flags & SHADOW_USES_MAPS ? &state->fit : NULL;
+    in.fit = state->system->flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT) ? &state->fit : NULL;
     in.params = state->params.value;
     in.view = &s->renderer->gbuffer.view.view;
     in.trace_maps = state->traced;

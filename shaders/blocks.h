@@ -34,8 +34,18 @@ typedef uint32_t uvec4[4];
 #define UNIT_SOFT_TERM 16     /* R32UI: soft_term.glsl */
 #define UNIT_SOFT_RADIUS 17   /* R32UI: soft_term.glsl */
 
+#define UNIT_ASM_IDS 22       /* R32UI: drawn triangle seen in a texel of a page */
+#define UNIT_ASM_TABLE 23     /* R32UI: child of each cell of each slot, 0: none */
+
 #define NO_TRIANGLE 0xffffffffu
 #define INSTANCE_MIRRORED 1u
+
+/* Adaptive shadow maps (shadow/asm/). A page is ASM_PAGE texels a side and has ASM_CELLS cells a side, each of which a page of its own may refine
+ * ASM_CELLS times; so often below the root at most; slots a row of the pool's textures; figures behind the counters of slots. */
+#define ASM_PAGE 16
+#define ASM_CELLS 4
+#define ASM_LEVELS 8
+#define ASM_COLUMNS 64
 
 #define LIGHTS_MAX 16
 #define MAPS_MAX 6
@@ -86,6 +96,17 @@ BLOCK(maps_block, 3)
     vec4 map_scale[MAPS_MAX];
     vec4 map_depth[MAPS_MAX]; /* near, far, unused, world size of a texel (at depth 1 if perspective) */
     uvec4 map_counts;         /* maps, side in texels, unused, unused */
+};
+
+/* The trees of an adaptive shadow map. Its finest texels, ASM_CELLS^ASM_LEVELS to one of the root, number all places: place = base + floor(part + q.xy /
+ * w) with q and w as in maps_block, so that what is far from the map's corner and near the camera keeps its precision. */
+BLOCK(asm_block, 7)
+{
+    vec4 asm_rows[3 * MAPS_MAX]; /* the first two in finest texels, seen from the base */
+    vec4 asm_part[MAPS_MAX];     /* xy: the base's fraction; z: near; w: far (0: none) */
+    ivec4 asm_base[MAPS_MAX];    /* xy: the base; zw: column and row of the root's first slot */
+    vec4 asm_texel;              /* x: world size of a root texel (at depth 1 if perspective), largest of the maps; y: of its smaller side */
+    ivec4 asm_counts;            /* side in finest texels, slots, pixels to each one analysed, which of them now */
 };
 
 /* The parameters of the shadow system at work, in the order of its descriptors. */

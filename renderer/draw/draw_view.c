@@ -88,6 +88,12 @@ bool draw_view_set(struct draw_view *v, const struct draw_scene *scene, const st
     return upload_rows(v, scene, err) && upload_block(v, scene, err);
 }
 
+bool draw_view_set_edges(struct draw_view *v, const struct draw_scene *scene, const struct view *view, struct error *err)
+{
+    v->view = *view;
+    return upload_block(v, scene, err);
+}
+
 void draw_view_finish(struct draw_view *v)
 {
     gl_buffer_finish(&v->rows);
@@ -117,7 +123,7 @@ static void fill_commands(const struct draw_view *v, const struct scene *s, enum
             const struct instance *instance = &s->instances[i];
             const struct mesh *mesh = &s->meshes[instance->mesh];
             if (bucket_of(s, instance, what) == bucket && mesh->index_count > 0 &&
-                cull_box_visible(&v->view, &instance->bounds, what == DRAW_DEPTH))
+                cull_box_visible(&v->view, &instance->bounds, what != DRAW_IDS))
                 commands[n++] = (struct command){mesh->index_count, 1, mesh->first_index, (int32_t)mesh->first_vertex, i};
         }
     }
@@ -128,7 +134,7 @@ static bool draw_bucket(const struct draw_view *v, const struct draw_scene *d, e
                         size_t count, struct error *err)
 {
     char defines[128];
-    snprintf(defines, sizeof defines, "%s%s%sHAS_TEXCOORDS %d\nHAS_COLORS %d\n", what == DRAW_IDS ? "IDS\n" : "",
+    snprintf(defines, sizeof defines, "%s%s%sHAS_TEXCOORDS %d\nHAS_COLORS %d\n", what != DRAW_DEPTH ? "IDS\n" : "",
              bucket & BUCKET_HOLES ? "HOLES\n" : "", !v->view.orthographic && !isinf(v->view.far) ? "FAR\n" : "",
              d->scene->texcoord_count > 0, d->scene->color_count > 0);
     struct gl_program *program = gl_programs_get(d->gl->programs, "scene_draw.vert", "scene_draw.frag", defines, err);
@@ -155,7 +161,7 @@ static bool draw_buckets(struct draw_view *v, struct draw_scene *d, enum draw_wh
     gl_buffer_bind_texture(&v->rows, UNIT_ROWS);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
-    (what == DRAW_DEPTH ? glEnable : glDisable)(GL_DEPTH_CLAMP);
+    (what != DRAW_IDS ? glEnable : glDisable)(GL_DEPTH_CLAMP);
     (far ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
     for (unsigned bucket = 0; ok && bucket < BUCKET_COUNT; bucket++)
         if (starts[bucket + 1] > starts[bucket])

@@ -20,10 +20,13 @@ struct draw_view {
 
 /* Makes `v` look from `view`. */
 bool draw_view_set(struct draw_view *v, const struct draw_scene *scene, const struct view *view, struct error *err);
+/* The same where only the picture's edges and size differ from what was set. */
+bool draw_view_set_edges(struct draw_view *v, const struct draw_scene *scene, const struct view *view, struct error *err);
 void draw_view_finish(struct draw_view *v);
 
 enum draw_what {
     DRAW_IDS,   /* the camera's: ids and depth; hides back faces of single-sided materials */
+    DRAW_DEPTH_IDS, /* as DRAW_DEPTH, and ids */
     DRAW_DEPTH, /* a light's: depth alone; every triangle, whichever side it shows; nothing is cut off by the near plane */
 };
 

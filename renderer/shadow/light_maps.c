@@ -28,18 +28,20 @@ struct encode_job {
     float *texels;
 };
 
-/* Depth along the axis to what the depth buffer would hold (shaders/maps.glsl), one row. */
+void light_maps_encode(const struct view *v, float *texels, size_t count)
+{
+    float near = (float)v->near, scale = (float)(1 / (v->far - v->near)), far = (float)v->far;
+    for (size_t i = 0; i < count; i++) {
+        float d = v->orthographic ? (far - texels[i]) * scale : near / texels[i];
+        texels[i] = isinf(texels[i]) ? 0 : fminf(fmaxf(d, 0), 1);
+    }
+}
+
 static void encode_row(void *context, size_t row, unsigned worker)
 {
     (void)worker;
     const struct encode_job *job = context;
-    const struct view *v = job->view;
-    float *texel = job->texels + row * v->width;
-    float near = (float)v->near, scale = (float)(1 / (v->far - v->near)), far = (float)v->far;
-    for (uint32_t x = 0; x < v->width; x++) {
-        float d = v->orthographic ? (far - texel[x]) * scale : near / texel[x];
-        texel[x] = isinf(texel[x]) ? 0 : fminf(fmaxf(d, 0), 1);
-    }
+    light_maps_encode(job->view, job->texels + row * job->view->width, job->view->width);
 }
 
 static bool trace_map(struct light_maps *m, const struct shadow_input *in, const struct tracer *tracer, unsigned layer,

@@ -22,5 +22,8 @@ bool light_maps_prepare(void *maps, const struct shadow_input *in, struct error 
 size_t light_maps_bytes(const void *maps);
 void light_maps_finish(void *maps);
 
+/* Depths along the axis of `view` (INFINITY: none) to what a depth buffer would hold (shaders/maps.glsl), in place. */
+void light_maps_encode(const struct view *view, float *texels, size_t count);
+
 /* Makes them what shaders/maps.glsl reads, relative to in->view. */
 bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct error *err);

@@ -89,18 +89,20 @@ static struct light_state *create(struct light_states *s, const struct shadow_sy
     return state;
 }
 
-static bool prepare(struct light_state *state, const struct fit_geometry *geometry, struct shadow_input *in, struct error *err)
+/* still: the light is where it was when this ran last, so the fit stands. */
+static bool prepare(struct light_state *state, const struct fit_geometry *geometry, struct shadow_input *in, bool still,
+                    struct error *err)
 {
     const struct shadow_system *system = state->system;
-    if (system->flags & SHADOW_USES_MAPS) {
+    in->fit = &state->fit;
+    if (!still && system->flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT)) {
         int size = shadow_param_index(system, "size"), fit = shadow_param_index(system, "fit");
+        uint32_t side = size >= 0 ? (uint32_t)in->params[size] : SHADOW_FIT_SIDE;
         if (!state->casters)
             state->casters = malloc((geometry->scene->instance_count + 1) * sizeof *state->casters);
         if (!state->casters)
             return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for shadows");
-        shadow_fit_compute(geometry, in->light, (uint32_t)in->params[size], fit >= 0 && in->params[fit] == 1, state->casters,
-                           &state->fit);
-        in->fit = &state->fit;
+        shadow_fit_compute(geometry, in->light, side, fit >= 0 && in->params[fit] == 1, state->casters, &state->fit);
     }
     return !system->prepare || system->prepare(state->state, in, err);
 }
@@ -113,18 +115,19 @@ struct light_state *light_states_get(struct light_states *s, const struct fit_ge
     struct light_state *state = find(s, system, params, in);
     if (!state && !(state = create(s, system, params, in, err)))
         return NULL;
-    bool stands = state->prepared && same_light(&state->light, in->light) && !(system->flags & SHADOW_VIEW_DRIVEN);
+    bool still = state->prepared && same_light(&state->light, in->light), stands = still && !(system->flags & SHADOW_VIEW_DRIVEN);
     if (!stands) {
+        bool rest = state->prepared && system->converged && system->converged(state->state);
         state->light = *in->light;
-        state->prepared = prepare(state, geometry, in, err);
+        state->prepared = prepare(state, geometry, in, still, err);
         if (!state->prepared)
             return NULL;
-        *rebuilt = true;
+        *rebuilt |= !(rest && light_state_converged(state));
     }
     state->light_index = in->light_index;
     state->viewer = in->viewer;
     state->last_frame = s->frame;
-    in->fit = system->flags & SHADOW_USES_MAPS ? &state->fit : NULL;
+    in->fit = system->flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT) ? &state->fit : NULL;
     return state;
 }
 

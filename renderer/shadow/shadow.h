@@ -41,6 +41,7 @@ struct shadow_params {
 };
 
 #define SHADOW_MAPS_MAX 6
+#define SHADOW_FIT_SIDE 512
 
 /* What a light's maps see: the same for every map system (shadow/fit.h). Part of the tight fit: casters only. */
 struct shadow_fit {
@@ -56,7 +57,7 @@ struct shadow_input {
     const struct light *light;
     unsigned light_index;
     uint32_t viewer;              /* whose picture: light_states.h */
-    const struct shadow_fit *fit; /* NULL for systems without SHADOW_USES_MAPS */
+    const struct shadow_fit *fit; /* NULL for systems without SHADOW_USES_MAPS or _FIT */
     const double *params;         /* the values, in the order of the system's descriptors */
     const struct view *view;      /* the camera; resolve, and prepare of view-driven systems */
     struct gbuffer *gbuffer;      /* likewise */
@@ -93,6 +94,7 @@ enum shadow_flags {
     SHADOW_VIEW_DRIVEN = 2, /* prepare runs every frame, with view and gbuffer; state per view too */
     SHADOW_NO_SHADOWS = 4,  /* answers 1 for every receiver: full cover need not be dark */
     SHADOW_BINARY = 8,      /* values are 0 or 1 only */
+    SHADOW_USES_FIT = 32,   /* wants shadow_fit, and chooses the resolution itself: maps come as SHADOW_FIT_SIDE a side */
     SHADOW_EXACT = 16,      /* promises the reference's own answer: error test demands 0 */
     SHADOW_BRIGHTENS = 32,  /* full cover may leave some light, below one half */
 };

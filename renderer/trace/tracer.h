@@ -35,6 +35,10 @@ void tracer_light(const struct tracer *t, const struct view *view, const uint32_
 void tracer_light_ids(const struct tracer *t, const struct view *views, size_t count, const uint32_t *casters,
                       size_t caster_count, float *depths, uint32_t *ids);
 
+/* The same for `count` views at once; those of view i start at [i * stride], stride >= width * height of each. */
+void tracer_light_views(const struct tracer *t, const struct view *views, size_t count, size_t stride, const uint32_t *casters,
+                        size_t caster_count, struct job_pool *pool, float *depths, uint32_t *ids);
+
 /* The speed baseline. Ids as tracer_camera() wrote them; visibility: 1 lit, 0 shadowed or no receiver. */
 void tracer_shadow_point(const struct tracer *t, const struct view *view, const struct light *light, const uint32_t *ids,
                          struct job_pool *pool, float *visibility);

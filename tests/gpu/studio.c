@@ -11,6 +11,9 @@
 #include "base/job_pool.h"
 #include "reference/reference.h"
 
+/* A progressive system that is not done by then will never be. */
+#define FRAMES_MAX 2000
+
 bool studio_open(struct studio *studio, const char *shader_dir, const char *cache_dir)
 {
     struct error err = {0};
@@ -85,9 +88,16 @@ struct shot shot_take(struct studio *studio, struct set *set)
                         .light_count = s->light_count,
                         .size = pixels * (s->format == PIXELS_RGBA32F ? 16 : 4)};
     shot.pixels = room(shot.size, 1);
-    if (!renderer_submit(studio->renderer, set->uploaded, s, 7, &err) ||
-        !renderer_collect(studio->renderer, true, shot.pixels, shot.size, &shot.info, &err))
-        fail_msg("%s: %s", set->scene->name, err.message);
+    bool prepared = false;
+    for (int frame = 0; frame == 0 || !shot.info.converged; frame++) {
+        if (frame == FRAMES_MAX)
+            fail_msg("%s, %s: not converged after %d frames", set->scene->name, s->system->name, frame);
+        if (!renderer_submit(studio->renderer, set->uploaded, s, 7, &err) ||
+            !renderer_collect(studio->renderer, true, shot.pixels, shot.size, &shot.info, &err))
+            fail_msg("%s: %s", set->scene->name, err.message);
+        prepared |= shot.info.prepared;
+    }
+    shot.info.prepared = prepared;
     if (s->aa != 1)
         return shot;
     shot.ids = room(pixels, sizeof *shot.ids);

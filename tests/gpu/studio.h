@@ -41,6 +41,7 @@ struct shot {
     struct frame_info info;
 };
 
+/* As many frames as a progressive system needs; info.prepared: some of them prepared something. */
 struct shot shot_take(struct studio *studio, struct set *set);
 void shot_drop(struct shot *shot);
 

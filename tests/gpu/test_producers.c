@@ -204,11 +204,13 @@ static void test_back_faces(void **state)
 static void check_maps(struct set *set, double share, const char *name)
 {
     for (size_t i = 0; i < shadow_system_count; i++) {
-        if (!(shadow_systems[i]->flags & SHADOW_USES_MAPS))
+        int size = shadow_param_index(shadow_systems[i], "size");
+        if (!(shadow_systems[i]->flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT)))
             continue;
         set->settings.system = shadow_systems[i];
         set->settings.params = shadow_defaults(shadow_systems[i]);
-        set->settings.params.value[shadow_param_index(shadow_systems[i], "size")] = 512;
+        if (size >= 0)
+            set->settings.params.value[size] = 512;
         set->settings.map_pass = CAMERA_PASS_RASTER;
         struct shot raster = shot_take(&studio, set);
         set->settings.map_pass = CAMERA_PASS_TRACED;
