@@ -1,0 +1,406 @@
+/* Shadows with supersampled boundaries by a shadow-mask table: after a patent filing of Zhejiang University (Wang, Hua, Bao). What its text leaves
+ * open, and what one facet a pixel cannot do: docs/filtered.md.
+ *
+ * Silhouettes, lists and pixels on the CPU, on the job pool: a software rasterizer runs a shader's longest branch for every pixel, and few
+ * pixels lie on the contour. */
+#include <epoxy/gl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/job_pool.h"
+#include "draw/draw_scene.h"
+#include "gl/context.h"
+#include "passes/gbuffer.h"
+#include "scene/pixel.h"
+#include "shadow/light_maps.h"
+#include "shadow/mask_facet.h"
+#include "shadow/shared_params.h"
+
+enum { PARAM_BIAS = SHADOW_PARAM_FIT + 1, PARAM_SLOPE };
+enum { ROWS = 8 }; /* picture rows a job */
+
+/* slope: a plane leaves a texel's centre by at most half a texel along both axes, 0.71 of a texel. */
+static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS(0.00075, 1)};
+
+/* Faces need no bias against a texel's grain, only against their neighbours of the receiver, whose planes the facet leaves: less of it where
+ * light grazes. */
+static const float FACE_TANGENT = 2;
+
+struct mask {
+    struct mask_table table;
+    struct light_maps maps;
+    struct adjacency adjacency;
+    struct mask_contour contours[SHADOW_MAPS_MAX];
+    unsigned count;
+    float *depths; /* of all maps */
+    size_t depth_count;
+    float *visibility; /* of the last picture; masks likewise */
+    uint32_t *receivers, *lit;
+    struct pixel *surfaces;
+    size_t pixel_room, surface_room, pixels;
+    struct mask_counts counts;
+};
+
+/* One picture at work. */
+struct resolve_job {
+    struct mask *state;
+    struct mask_map maps[SHADOW_MAPS_MAX];
+    const uint32_t *ids;
+    const struct pixel *surfaces;
+    uint32_t width, height;
+    bool orthographic; /* the camera */
+    /* The ray through the centre of pixel (0, 0), and its steps; relative to the camera's eye. */
+    float origin[3], origin_dx[3], origin_dy[3], direction[3], direction_dx[3], direction_dy[3];
+    enum light_kind kind;
+    float light[3]; /* position, relative; or the direction against the light's */
+    float axis[3], cosine, range2, bias, slope;
+    struct mask_counts *counts; /* a worker */
+};
+
+static bool out_of_memory(struct error *err) { return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for shadow masks"); }
+
+static bool init(void *state, const struct shadow_input *in, struct error *err)
+{
+    struct mask *s = state;
+    mask_table_fill(&s->table);
+    return adjacency_init(&s->adjacency, in->scene, err);
+}
+
+static bool read_depths(struct mask *s, const struct shadow_input *in, struct error *err)
+{
+    size_t count = (size_t)s->maps.depth.width * s->maps.depth.height * s->maps.depth.layers;
+    if (s->depth_count < count) {
+        free(s->depths);
+        s->depths = malloc(count * sizeof *s->depths);
+        s->depth_count = s->depths ? count : 0;
+        if (!s->depths)
+            return out_of_memory(err);
+    }
+    glGetTextureImage(s->maps.depth.id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, (GLsizei)(count * sizeof *s->depths), s->depths);
+    return gl_check(in->gl, err);
+}
+
+static bool prepare(void *state, const struct shadow_input *in, struct error *err)
+{
+    struct mask *s = state;
+    for (unsigned i = in->fit->map_count; i < s->count; i++)
+        mask_contour_finish(&s->contours[i]);
+    s->count = 0;
+    if (!light_maps_prepare(&s->maps, in, err))
+        return false;
+    for (unsigned i = 0; i < in->fit->map_count; i++) {
+        if (!mask_contour_build(&s->contours[i], in->scene, &s->adjacency, &in->fit->maps[i], in->fit->casters,
+                                in->fit->caster_count, in->memory, in->pool, err))
+            return false;
+        s->count = i + 1;
+    }
+    return s->count == 0 || read_depths(s, in, err);
+}
+
+static void put(float out[3], struct dvec3 v)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+static struct mask_map place_map(const struct mask *s, unsigned i, struct dvec3 camera_eye)
+{
+    const struct mask_contour *c = &s->contours[i];
+    const struct view *v = &c->mesh.view;
+    const struct dvec3 axes[3] = {v->right, v->up, v->forward};
+    struct mask_map m = {.contour = c,
+                         .depths = s->depths + (size_t)i * c->size * c->size,
+                         .scale_x = (float)c->mesh.scale_x,
+                         .scale_y = (float)c->mesh.scale_y,
+                         .offset_x = (float)c->mesh.offset_x,
+                         .offset_y = (float)c->mesh.offset_y,
+                         .near = (float)v->near,
+                         .far = (float)v->far,
+                         .texel = (float)fmax(1 / fabs(c->mesh.scale_x), 1 / fabs(c->mesh.scale_y)),
+                         .orthographic = v->orthographic};
+    for (int k = 0; k < 3; k++) {
+        put(m.row[k], axes[k]);
+        m.row[k][3] = (float)dvec3_dot(axes[k], dvec3_sub(camera_eye, v->eye));
+    }
+    return m;
+}
+
+static void aim(struct resolve_job *job, const struct view *view)
+{
+    struct dvec3 o, d, ox, dx, oy, dy;
+    double w = 1.0 / view->width, h = 1.0 / view->height;
+    view_ray(view, 0.5, 0.5, &o, &d);
+    view_ray(view, 0.5 + view->width, 0.5, &ox, &dx);
+    view_ray(view, 0.5, 0.5 + view->height, &oy, &dy);
+    put(job->origin, dvec3_sub(o, view->eye));
+    put(job->origin_dx, dvec3_scale(dvec3_sub(ox, o), w));
+    put(job->origin_dy, dvec3_scale(dvec3_sub(oy, o), h));
+    put(job->direction, d);
+    put(job->direction_dx, dvec3_scale(dvec3_sub(dx, d), w));
+    put(job->direction_dy, dvec3_scale(dvec3_sub(dy, d), h));
+    job->orthographic = view->orthographic;
+}
+
+static void set_light(struct resolve_job *job, const struct light *light, struct dvec3 eye)
+{
+    job->kind = light->kind;
+    put(job->light, light->kind == LIGHT_DIRECTIONAL ? dvec3_neg(light->direction) : dvec3_sub(light->position, eye));
+    put(job->axis, light->direction);
+    job->cosine = (float)cos(light->outer);
+    job->range2 = light->kind == LIGHT_DIRECTIONAL || light->range == 0 ? INFINITY : (float)(light->range * light->range);
+}
+
+static inline float dot3(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* A pixel's receiver, relative to the camera's eye. */
+struct receiver {
+    float point[3], direction[3], depth; /* of its ray */
+    float normal[3], to_light[3];        /* unit */
+    float cosine;                        /* of the angle of incidence */
+};
+
+/* As receiver_at() of shaders/receiver.glsl. */
+static bool find_receiver(const struct resolve_job *job, uint32_t x, uint32_t y, struct receiver *r)
+{
+    const struct pixel *surface = &job->surfaces[(size_t)y * job->width + x];
+    float fx = (float)x, fy = (float)y, v[3];
+    r->depth = surface->depth;
+    if (!(r->depth > 0))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        r->direction[k] = job->direction[k] + fx * job->direction_dx[k] + fy * job->direction_dy[k];
+        r->point[k] = job->origin[k] + fx * job->origin_dx[k] + fy * job->origin_dy[k] + r->depth * r->direction[k];
+        v[k] = job->kind == LIGHT_DIRECTIONAL ? job->light[k] : job->light[k] - r->point[k];
+    }
+    pixel_geometric(surface, r->normal);
+    float facing = dot3(r->normal, v), d2 = dot3(v, v), scale = 1 / sqrtf(d2);
+    if (!(facing > 0) || !(d2 <= job->range2))
+        return false;
+    for (int k = 0; k < 3; k++)
+        r->to_light[k] = v[k] * scale;
+    r->cosine = facing * scale;
+    return job->kind != LIGHT_SPOT || -dot3(r->to_light, job->axis) >= job->cosine;
+}
+
+static void turn(const struct mask_map *m, const float v[3], float out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = dot3(m->row[k], v);
+}
+
+/* False: the point lies outside the map. */
+static bool put_on_map(const struct mask_map *m, const float p[3], float q[3])
+{
+    for (int k = 0; k < 3; k++)
+        q[k] = dot3(m->row[k], p) + m->row[k][3];
+    float w = m->orthographic ? 1 : 1 / q[2], side = (float)m->contour->size;
+    float x = q[0] * w * m->scale_x + m->offset_x, y = q[1] * w * m->scale_y + m->offset_y;
+    return w > 0 && x >= 0 && y >= 0 && x < side && y < side;
+}
+
+/* The facet's derivatives: in perspective P = t d, t = D / (N . d), so dP = t (d' - d N . d' / N . d), and N . d changes by N . d'. */
+static void make_facet(const struct resolve_job *job, const struct mask_map *m, const struct receiver *r, uint32_t id,
+                       struct mask_facet *f)
+{
+    float along = dot3(r->normal, r->direction), step[2][3], change[2];
+    const float *steps[2] = {job->orthographic ? job->origin_dx : job->direction_dx,
+                             job->orthographic ? job->origin_dy : job->direction_dy};
+    for (int i = 0; i < 2; i++) {
+        change[i] = dot3(r->normal, steps[i]) / along;
+        for (int k = 0; k < 3; k++)
+            step[i][k] = (job->orthographic ? 1 : r->depth) * (steps[i][k] - r->direction[k] * change[i]);
+    }
+    const float away[3] = {-r->normal[0], -r->normal[1], -r->normal[2]};
+    turn(m, away, f->normal);
+    turn(m, step[0], f->dx);
+    turn(m, step[1], f->dy);
+    turn(m, r->to_light, f->to_light);
+    f->kx = job->orthographic ? 0 : change[0];
+    f->ky = job->orthographic ? 0 : change[1];
+    float tangent = sqrtf(fmaxf(1 / (r->cosine * r->cosine) - 1, 0)), texel = m->texel * (m->orthographic ? 1 : f->point[2]);
+    f->bias = job->bias + job->slope * texel * tangent;
+    f->face_bias = job->bias + job->slope * texel * fminf(tangent, FACE_TANGENT);
+    f->id = id;
+}
+
+static void resolve_pixel(struct resolve_job *job, uint32_t x, uint32_t y, struct mask_counts *counts)
+{
+    struct mask *s = job->state;
+    size_t i = (size_t)y * job->width + x;
+    struct receiver r;
+    struct mask_facet facet;
+    s->receivers[i] = find_receiver(job, x, y, &r) ? UINT32_MAX : 0;
+    uint32_t dark = 0;
+    for (unsigned k = 0; s->receivers[i] && k < s->count; k++)
+        if (put_on_map(&job->maps[k], r.point, facet.point)) {
+            make_facet(job, &job->maps[k], &r, job->ids[i], &facet);
+            dark = mask_facet_shadow(&s->table, &job->maps[k], &facet, counts);
+            break;
+        }
+    s->lit[i] = s->receivers[i] & ~dark;
+    s->visibility[i] = (float)__builtin_popcount(s->lit[i]) * (1.0f / 32);
+}
+
+static void resolve_rows(void *context, size_t index, unsigned worker)
+{
+    struct resolve_job *job = context;
+    uint32_t end = ((uint32_t)index + 1) * ROWS < job->height ? ((uint32_t)index + 1) * ROWS : job->height;
+    for (uint32_t y = (uint32_t)index * ROWS; y < end; y++)
+        for (uint32_t x = 0; x < job->width; x++)
+            resolve_pixel(job, x, y, &job->counts[worker]);
+}
+
+static bool reserve(struct mask *s, size_t pixels, struct error *err)
+{
+    s->pixels = pixels;
+    if (s->pixel_room >= pixels)
+        return true;
+    free(s->visibility);
+    free(s->receivers);
+    free(s->lit);
+    s->visibility = malloc(pixels * sizeof *s->visibility);
+    s->receivers = malloc(pixels * sizeof *s->receivers);
+    s->lit = malloc(pixels * sizeof *s->lit);
+    s->pixel_room = s->visibility && s->receivers && s->lit ? pixels : 0;
+    s->pixels = s->pixel_room ? pixels : 0;
+    return s->pixel_room || out_of_memory(err);
+}
+
+static const struct pixel *read_surfaces(struct mask *s, const struct shadow_input *in, struct error *err)
+{
+    struct gbuffer *b = in->gbuffer;
+    if (b->traced && in->draw->plain)
+        return b->cpu_pixels;
+    if (s->surface_room < s->pixels) {
+        free(s->surfaces);
+        s->surfaces = malloc(s->pixels * sizeof *s->surfaces);
+        s->surface_room = s->surfaces ? s->pixels : 0;
+        if (!s->surfaces) {
+            out_of_memory(err);
+            return NULL;
+        }
+    }
+    glGetTextureImage(b->pixels.id, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, (GLsizei)(s->pixels * sizeof *s->surfaces), s->surfaces);
+    return gl_check(in->gl, err) ? s->surfaces : NULL;
+}
+
+/* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */
+static void upload(const struct shadow_input *in, const float *visibility)
+{
+    GLint texture, layer;
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
+                                          &texture);
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
+                                          &layer);
+    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
+                        visibility);
+}
+
+static bool resolve(void *state, const struct shadow_input *in, struct error *err)
+{
+    struct mask *s = state;
+    struct resolve_job job = {.state = s,
+                              .width = in->view->width,
+                              .height = in->view->height,
+                              .bias = (float)in->params[PARAM_BIAS],
+                              .slope = (float)in->params[PARAM_SLOPE]};
+    unsigned workers = job_pool_threads(in->pool);
+    if (!reserve(s, (size_t)job.width * job.height, err))
+        return false;
+    job.ids = gbuffer_read_ids(in->gbuffer, in->gl, err);
+    job.surfaces = job.ids ? read_surfaces(s, in, err) : NULL;
+    if (!job.surfaces)
+        return false;
+    job.counts = calloc(workers, sizeof *job.counts);
+    if (!job.counts)
+        return out_of_memory(err);
+    for (unsigned i = 0; i < s->count; i++)
+        job.maps[i] = place_map(s, i, in->view->eye);
+    aim(&job, in->view);
+    set_light(&job, in->light, in->view->eye);
+    job_pool_for(in->pool, (job.height + ROWS - 1) / ROWS, resolve_rows, &job);
+    s->counts = (struct mask_counts){0};
+    for (unsigned i = 0; i < workers; i++) {
+        s->counts.receivers += job.counts[i].receivers;
+        s->counts.contour += job.counts[i].contour;
+        s->counts.faces += job.counts[i].faces;
+    }
+    free(job.counts);
+    upload(in, s->visibility);
+    return gl_check(in->gl, err);
+}
+
+static bool read_masks(void *state, const struct shadow_input *in, uint32_t *receivers, uint32_t *lit, struct error *err)
+{
+    const struct mask *s = state;
+    size_t pixels = (size_t)in->view->width * in->view->height;
+    if (s->pixels != pixels)
+        return error_set(err, ERROR_BUG, NULL, "masks of a picture that was not resolved were asked for");
+    memcpy(receivers, s->receivers, pixels * sizeof *receivers);
+    memcpy(lit, s->lit, pixels * sizeof *lit);
+    return true;
+}
+
+static size_t figures(const void *state, struct shadow_figure *out)
+{
+    const struct mask *s = state;
+    double texels = 0, entries = 0, faces = 0, pixels = (double)s->counts.receivers, contour = (double)s->counts.contour;
+    for (unsigned i = 0; i < s->count; i++) {
+        texels += (double)s->contours[i].crossed_count;
+        entries += (double)s->contours[i].entry_count;
+        faces += (double)s->contours[i].face_count;
+    }
+    size_t n = 0;
+    out[n++] = (struct shadow_figure){"table_bits_wrong_fraction", s->table.wrong};
+    out[n++] = (struct shadow_figure){"contour_texels", texels};
+    out[n++] = (struct shadow_figure){"list_entries", entries};
+    out[n++] = (struct shadow_figure){"list_faces", faces};
+    out[n++] = (struct shadow_figure){"contour_pixels_fraction", pixels > 0 ? contour / pixels : 0};
+    out[n++] = (struct shadow_figure){"faces_per_contour_pixel", contour > 0 ? (double)s->counts.faces / contour : 0};
+    return n;
+}
+
+static void finish(void *state)
+{
+    struct mask *s = state;
+    light_maps_finish(&s->maps);
+    adjacency_finish(&s->adjacency);
+    for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
+        mask_contour_finish(&s->contours[i]);
+    free(s->depths);
+    free(s->visibility);
+    free(s->receivers);
+    free(s->lit);
+    free(s->surfaces);
+}
+
+static size_t bytes(const void *state)
+{
+    const struct mask *s = state;
+    size_t sum = sizeof s->table.bits + light_maps_bytes(&s->maps) + s->adjacency.count * sizeof *s->adjacency.across +
+                 s->depth_count * sizeof *s->depths + s->pixel_room * 12 + s->surface_room * sizeof *s->surfaces;
+    for (unsigned i = 0; i < s->count; i++)
+        sum += s->contours[i].bytes;
+    return sum;
+}
+
+const struct shadow_system shadow_mask = {
+    .name = "mask",
+    .title = "Shadow-mask table",
+    .help = "Depth map; on its contour the faces listed there, as masks of the pixel's 32 samples from a table of half-planes.",
+    .lights = 1 << LIGHT_DIRECTIONAL | 1 << LIGHT_POINT | 1 << LIGHT_SPOT,
+    .flags = SHADOW_USES_MAPS,
+    .params = params,
+    .param_count = sizeof params / sizeof *params,
+    .state_size = sizeof(struct mask),
+    .init = init,
+    .prepare = prepare,
+    .resolve = resolve,
+    .finish = finish,
+    .bytes = bytes,
+    .read_masks = read_masks,
+    .figures = figures,
+};
