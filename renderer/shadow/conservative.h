@@ -33,13 +33,17 @@ typedef uint32_t lanes_uint __attribute__((vector_size(32)));
 
 #define LANES_COUNT ((lanes_float){0, 1, 2, 3, 4, 5, 6, 7})
 
+/* Of three; fminf() and fmaxf() are calls, for the sake of what is not a number. */
+#define CONSERVATIVE_LEAST(v) ((v)[0] < (v)[1] ? (v)[0] < (v)[2] ? (v)[0] : (v)[2] : (v)[1] < (v)[2] ? (v)[1] : (v)[2])
+#define CONSERVATIVE_MOST(v)  ((v)[0] > (v)[1] ? (v)[0] > (v)[2] ? (v)[0] : (v)[2] : (v)[1] > (v)[2] ? (v)[1] : (v)[2])
+
 /* Corners in texels from the window's corner, finite. False: it touches nothing in the window of width x height texels. */
 static inline __attribute__((always_inline)) bool conservative_setup(struct conservative *t, const float x[3], const float y[3],
                                                                      int32_t width, int32_t height)
 {
     const float m = CONSERVATIVE_MARGIN;
-    float left = fminf(fminf(x[0], x[1]), x[2]) - m, right = fmaxf(fmaxf(x[0], x[1]), x[2]) + m;
-    float top = fminf(fminf(y[0], y[1]), y[2]) - m, bottom = fmaxf(fmaxf(y[0], y[1]), y[2]) + m;
+    float left = CONSERVATIVE_LEAST(x) - m, right = CONSERVATIVE_MOST(x) + m;
+    float top = CONSERVATIVE_LEAST(y) - m, bottom = CONSERVATIVE_MOST(y) + m;
     if (!(left < (float)width && right >= 0 && top < (float)height && bottom >= 0))
         return false;
     t->x0 = left > 0 ? (int32_t)left : 0;

@@ -5,13 +5,16 @@
 
 #include "base/error.h"
 #include "shadow/coverage_lists.h"
+#include "shadow/coverage_packed.h"
 #include "shadow/coverage_recovery.h"
 #include "shadow/geometry_maps.h"
 #include "shadow/shared_params.h"
 #include "shadow/surrounded.h"
 
-enum { PARAM_NODES = SHADOW_PARAM_FIT + 1, PARAM_RECOVERY };
+enum { PARAM_NODES = SHADOW_PARAM_FIT + 1, PARAM_LAYOUT, PARAM_RECOVERY };
+enum { LAYOUT_EXACT, LAYOUT_PACKED };
 
+static const char *const layout_choices[] = {"exact", "packed", NULL};
 static const char *const recovery_choices[] = {"off", "on", NULL};
 
 static const struct param_desc params[] = {
@@ -23,6 +26,14 @@ static const struct param_desc params[] = {
      .min = 1,
      .max = COVERAGE_NODES_MAX,
      .initial = 4},
+    {.name = "layout",
+     .unit = "",
+     .help = "exact: a triangle's own plane at the point; packed: what sixteen bytes a texel tell, lists of at most 4.",
+     .kind = PARAM_CHOICE,
+     .min = 0,
+     .max = 1,
+     .initial = LAYOUT_EXACT,
+     .choices = layout_choices},
     {.name = "recovery",
      .unit = "",
      .help = "Looks for small triangles that no texel kept.",
@@ -38,41 +49,82 @@ struct state {
     struct adjacency adjacency; /* with recovery */
 };
 
-/* Triangles of the list that do not hold the point, as ways to those that do. */
+/* Triangles of a list that may shadow the point and do not hold it, as ways to those that do. */
 static bool recover(const struct state *s, const struct geometry_map *m, const struct map_point *p, const uint32_t *ids,
-                    unsigned count, bool held, uint32_t *hint)
+                    unsigned count, bool *held, uint32_t *hint)
 {
     for (unsigned i = 0; i < count; i++) {
         enum geometry_verdict verdict = coverage_recover(m, &s->adjacency, ids[i], p, hint);
         if (verdict == GEOMETRY_BEFORE)
+            return true;
+        *held |= verdict != GEOMETRY_ELSEWHERE;
+    }
+    return false;
+}
+
+/* Packed lists are as long as their links allow. */
+static unsigned nodes_of(const double *values)
+{
+    unsigned nodes = (unsigned)values[PARAM_NODES];
+    return values[PARAM_LAYOUT] == LAYOUT_PACKED && nodes > COVERAGE_PACKED_NODES ? COVERAGE_PACKED_NODES : nodes;
+}
+
+static unsigned pool_of(const double *values) { return values[PARAM_LAYOUT] == LAYOUT_PACKED ? COVERAGE_RING : COVERAGE_POOL; }
+
+/* No ids, so no way over the mesh: what recovery there is, is surrounded(). */
+static bool decide_packed(void *state, const struct geometry_map *m, const struct map_point *p, const double *values,
+                          uint32_t *hint)
+{
+    (void)state;
+    uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y;
+    uint32_t links = coverage_list(m, x, y, p->at, nodes_of(values), pool_of(values), hint) & COVERAGE_LINKS;
+    bool held = false;
+    for (; links; links &= links - 1) {
+        const int8_t *step = coverage_pool[__builtin_ctz(links)];
+        uint32_t i = x + (uint32_t)step[0], j = y + (uint32_t)step[1];
+        enum geometry_verdict verdict = coverage_packed_ask(m, i, j, geometry_map_at(m, i, j), p, hint);
+        if (verdict == GEOMETRY_BEFORE)
             return false;
         held |= verdict != GEOMETRY_ELSEWHERE;
     }
-    return held || !surrounded(m, p, hint);
+    return held || values[PARAM_RECOVERY] == 0 || !surrounded(m, p, hint);
 }
 
 static bool decide(void *state, const struct geometry_map *m, const struct map_point *p, const double *values, uint32_t *hint)
 {
     const struct state *s = state;
-    uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y, ids[COVERAGE_NODES_MAX];
-    uint32_t list = coverage_list(m, x, y, p->at, (unsigned)values[PARAM_NODES], hint);
-    unsigned count = coverage_list_triangles(m, x, y, list, ids);
+    uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y, ids[COVERAGE_NODES_MAX], beside[COVERAGE_NODES_MAX];
+    /* In every list, and enough for most: without making one. */
+    if (geometry_ask(m, m->cells[p->at].triangle, p, hint) == GEOMETRY_BEFORE)
+        return false;
+    uint32_t list = coverage_list(m, x, y, p->at, nodes_of(values), pool_of(values), hint);
+    unsigned count = coverage_list_triangles(m, x, y, list, ids), besides = 0;
     bool held = false;
     for (unsigned i = 0; i < count; i++) {
+        if (ids[i] == p->id) {
+            held = true;
+            continue;
+        }
+        if (!geometry_may_shadow(m, ids[i], p, hint))
+            continue;
         enum geometry_verdict verdict = geometry_ask(m, ids[i], p, hint);
         if (verdict == GEOMETRY_BEFORE)
             return false;
-        held |= verdict != GEOMETRY_ELSEWHERE;
+        if (verdict == GEOMETRY_ELSEWHERE)
+            beside[besides++] = ids[i];
+        else
+            held = true;
     }
-    if (values[PARAM_RECOVERY] == 1)
-        return recover(s, m, p, ids, count, held, hint);
+    if (values[PARAM_RECOVERY] == 1 && recover(s, m, p, beside, besides, &held, hint))
+        return false;
     return held || !surrounded(m, p, hint);
 }
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)
 {
     struct state *s = state;
-    if (in->params[PARAM_RECOVERY] == 1 && !s->adjacency.across && !adjacency_init(&s->adjacency, in->scene, err))
+    if (in->params[PARAM_RECOVERY] == 1 && in->params[PARAM_LAYOUT] == LAYOUT_EXACT && !s->adjacency.across &&
+        !adjacency_init(&s->adjacency, in->scene, err))
         return false;
     return geometry_maps_prepare(&s->maps, in, err);
 }
@@ -80,7 +132,7 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct state *s = state;
-    return geometry_maps_resolve(&s->maps, in, decide, s, err);
+    return geometry_maps_resolve(&s->maps, in, in->params[PARAM_LAYOUT] == LAYOUT_PACKED ? decide_packed : decide, s, err);
 }
 
 static void finish(void *state)
@@ -97,7 +149,7 @@ static size_t bytes(const void *state)
 }
 
 /* Triangles of texel `t` of all maps, 0 where nothing is. */
-static unsigned texel_triangles(struct geometry_maps *g, uint32_t size, size_t t, unsigned nodes,
+static unsigned texel_triangles(struct geometry_maps *g, uint32_t size, size_t t, const double *values,
                                 uint32_t out[COVERAGE_NODES_MAX])
 {
     const struct geometry_map *m = &g->maps[t / size / size];
@@ -105,7 +157,7 @@ static unsigned texel_triangles(struct geometry_maps *g, uint32_t size, size_t t
     size_t at = geometry_map_at(m, x, y);
     if (at == SIZE_MAX || m->cells[at].triangle == MAP_NONE)
         return 0;
-    return coverage_list_triangles(m, x, y, coverage_list(m, x, y, at, nodes, &hint), out);
+    return coverage_list_triangles(m, x, y, coverage_list(m, x, y, at, nodes_of(values), pool_of(values), &hint), out);
 }
 
 static bool read_lists(void *state, const struct shadow_input *in, struct shadow_lists *out, struct error *err)
@@ -116,7 +168,7 @@ static bool read_lists(void *state, const struct shadow_input *in, struct shadow
     *out = (struct shadow_lists){g->count, size, malloc((texels + 1) * sizeof *out->first), NULL};
     for (size_t t = 0; out->first && t < texels; t++) {
         out->first[t] = (uint32_t)total;
-        total += texel_triangles(g, size, t, (unsigned)in->params[PARAM_NODES], ids);
+        total += texel_triangles(g, size, t, in->params, ids);
     }
     if (!out->first || !(out->triangles = malloc((total + 1) * sizeof *out->triangles))) {
         free(out->first);
@@ -124,7 +176,7 @@ static bool read_lists(void *state, const struct shadow_input *in, struct shadow
     }
     out->first[texels] = (uint32_t)total;
     for (size_t t = 0; t < texels; t++)
-        texel_triangles(g, size, t, (unsigned)in->params[PARAM_NODES], out->triangles + out->first[t]);
+        texel_triangles(g, size, t, in->params, out->triangles + out->first[t]);
     return true;
 }
 

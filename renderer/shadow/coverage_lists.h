@@ -13,13 +13,17 @@
 
 #define COVERAGE_NODES_MAX 16
 
-/* Texels whose triangles a list may link, relative: the texel itself, the eight around (the paper's); for lists of more than nine nodes the
- * sixteen around those too. */
-enum { COVERAGE_POOL = 25, COVERAGE_RING = 9 };
+/* Texels whose triangles a list may link, relative: the texel itself, the eight around (the paper's), and the sixteen around those, which
+ * fill the places that the eight leave free. */
+enum { COVERAGE_RING = 9, COVERAGE_POOL = 25 };
 extern const int8_t coverage_pool[COVERAGE_POOL][2];
 
-/* A list: bit k links texel coverage_pool[k]; never 0. `at` is (x, y)'s index in the map. Makes it if need be; any thread. */
-uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, uint32_t *hint);
+/* A list: bit k links texel coverage_pool[k]; of more than these bits it says that it was made. */
+#define COVERAGE_LINKS 0x01ffffffu
+
+/* `at` is (x, y)'s index in the map; pool: COVERAGE_RING or COVERAGE_POOL. Makes the list if need be; any thread. */
+uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
+                       uint32_t *hint);
 
 /* The triangles of a list: distinct drawn ids, MAP_OFF_EDGE taken off; returns how many. */
 unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,

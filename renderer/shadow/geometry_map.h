@@ -32,8 +32,10 @@ struct geometry_map {
     size_t wild_count, wild_room;
     uint32_t *entries; /* triangles of tile after tile */
     size_t entry_room;
-    uint32_t *counts; /* entries of each (chunk, tile), then where they start */
+    uint32_t *counts; /* entries of each (chunk, tile, side), then where they start */
     size_t count_room;
+    uint32_t *homes; /* of each triangle: where it goes, where that is one place */
+    size_t home_room;
 };
 
 /* Builds it anew. ERROR_TRY_AGAIN when memory is out. */

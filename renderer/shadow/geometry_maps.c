@@ -12,6 +12,8 @@
 #include "passes/gbuffer.h"
 #include "scene/pixel.h"
 
+#define INLINE static inline __attribute__((always_inline))
+
 enum { ROWS = 8, COLUMNS = 64 }; /* picture rows a job; pixels of a row worked on at a time */
 
 bool geometry_maps_prepare(struct geometry_maps *g, const struct shadow_input *in, struct error *err)
@@ -141,8 +143,7 @@ struct run {
 };
 
 /* The same arithmetic as receiver_at() of shaders/receiver.glsl. */
-static inline __attribute__((always_inline)) void find_receivers(const struct resolve_job *job, uint32_t x0, uint32_t y,
-                                                                 uint32_t count, struct run *run)
+INLINE void find_receivers(const struct resolve_job *job, uint32_t x0, uint32_t y, uint32_t count, struct run *run)
 {
     const struct pixel *surface = job->surfaces + (size_t)y * job->width + x0;
     for (uint32_t i = 0; i < count; i++) {
@@ -167,48 +168,86 @@ static inline __attribute__((always_inline)) void find_receivers(const struct re
     }
 }
 
-/* False: outside the map. */
-static inline bool put_on_map(const struct placed_map *m, float x, float y, float z, struct map_point *out)
+/* Where a run's receivers lie on a map. */
+struct placed_run {
+    float x[COLUMNS], y[COLUMNS], n[COLUMNS];
+    int32_t inside[COLUMNS];
+};
+
+INLINE void put_on_map(const struct placed_map *m, const struct run *run, struct placed_run *out)
 {
-    float q[3];
-    for (int k = 0; k < 3; k++)
-        q[k] = m->row[k][0] * x + m->row[k][1] * y + m->row[k][2] * z + m->row[k][3];
-    float w = m->orthographic ? 1 : 1 / q[2], side = (float)m->map->size;
-    out->n = m->orthographic ? m->far - q[2] : w;
-    out->x = q[0] * w * m->scale_x + m->offset_x;
-    out->y = q[1] * w * m->scale_y + m->offset_y;
-    return w > 0 && out->x >= 0 && out->y >= 0 && out->x < side && out->y < side;
+    float side = (float)m->map->size;
+    for (uint32_t i = 0; i < COLUMNS; i++) {
+        float q[3];
+        for (int k = 0; k < 3; k++)
+            q[k] = m->row[k][0] * run->x[i] + m->row[k][1] * run->y[i] + m->row[k][2] * run->z[i] + m->row[k][3];
+        float w = m->orthographic ? 1 : 1 / q[2];
+        out->n[i] = m->orthographic ? m->far - q[2] : w;
+        out->x[i] = q[0] * w * m->scale_x + m->offset_x;
+        out->y[i] = q[1] * w * m->scale_y + m->offset_y;
+        out->inside[i] = (w > 0) & (out->x[i] >= 0) & (out->y[i] >= 0) & (out->x[i] < side) & (out->y[i] < side);
+    }
 }
 
-static bool is_lit(const struct resolve_job *job, float x, float y, float z, uint32_t id, uint32_t *hint)
+/* The first map that holds a point answers for it; points on none are lit. */
+static void resolve_on_map(const struct resolve_job *job, const struct geometry_map *m, const struct placed_run *placed,
+                           size_t first, uint32_t count, int32_t *open, uint32_t *hint)
 {
-    struct map_point p;
-    for (unsigned i = 0; i < job->map_count; i++) {
-        const struct geometry_map *m = job->maps[i].map;
-        if (!put_on_map(&job->maps[i], x, y, z, &p))
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(open[i] & placed->inside[i]))
             continue;
-        p.id = id;
+        open[i] = 0;
+        struct map_point p = {.x = placed->x[i], .y = placed->y[i], .n = placed->n[i], .id = job->ids[first + i]};
         p.at = geometry_map_at(m, (uint32_t)p.x, (uint32_t)p.y);
-        return p.at == SIZE_MAX || !(p.n < m->cells[p.at].nearest) || job->decide(job->state, m, &p, job->in->params, hint);
+        if (p.at != SIZE_MAX && p.n < m->cells[p.at].nearest && !job->decide(job->state, m, &p, job->in->params, hint))
+            job->visibility[first + i] = 0;
     }
-    return true;
 }
+
+INLINE void resolve_run(const struct resolve_job *job, uint32_t x, uint32_t y, uint32_t count, uint32_t *hint)
+{
+    size_t first = (size_t)y * job->width + x;
+    struct run run;
+    struct placed_run placed;
+    int32_t receivers = 0;
+    memset(&run, 0, sizeof run);
+    find_receivers(job, x, y, count, &run);
+    for (uint32_t i = 0; i < count; i++) {
+        job->visibility[first + i] = run.receives[i] ? 1 : 0;
+        receivers |= run.receives[i];
+    }
+    for (unsigned i = 0; receivers && i < job->map_count; i++) {
+        put_on_map(&job->maps[i], &run, &placed);
+        resolve_on_map(job, job->maps[i].map, &placed, first, count, run.receives, hint);
+    }
+}
+
+INLINE void resolve_rows_inline(const struct resolve_job *job, size_t index)
+{
+    uint32_t end = ((uint32_t)index + 1) * ROWS < job->height ? ((uint32_t)index + 1) * ROWS : job->height, hint = 0;
+    for (uint32_t y = (uint32_t)index * ROWS; y < end; y++)
+        for (uint32_t x = 0; x < job->width; x += COLUMNS)
+            resolve_run(job, x, y, x + COLUMNS < job->width ? COLUMNS : job->width - x, &hint);
+}
+
+#ifdef __x86_64__
+/* The same arithmetic in wider vectors (no contraction), so the same bits. */
+__attribute__((target("avx2"))) static void resolve_rows_avx2(const struct resolve_job *job, size_t index)
+{
+    resolve_rows_inline(job, index);
+}
+#endif
 
 static void resolve_rows(void *context, size_t index, unsigned worker)
 {
     (void)worker;
-    const struct resolve_job *job = context;
-    uint32_t end = ((uint32_t)index + 1) * ROWS < job->height ? ((uint32_t)index + 1) * ROWS : job->height, hint = 0;
-    for (uint32_t y = (uint32_t)index * ROWS; y < end; y++)
-        for (uint32_t x = 0; x < job->width; x += COLUMNS) {
-            uint32_t count = x + COLUMNS < job->width ? COLUMNS : job->width - x;
-            size_t first = (size_t)y * job->width + x;
-            struct run run;
-            find_receivers(job, x, y, count, &run);
-            for (uint32_t i = 0; i < count; i++)
-                job->visibility[first + i] =
-                    run.receives[i] && is_lit(job, run.x[i], run.y[i], run.z[i], job->ids[first + i], &hint) ? 1 : 0;
-        }
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) {
+        resolve_rows_avx2(context, index);
+        return;
+    }
+#endif
+    resolve_rows_inline(context, index);
 }
 
 /* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */

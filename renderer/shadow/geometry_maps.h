@@ -51,4 +51,11 @@ enum geometry_verdict {
     GEOMETRY_OWN,       /* is the point's own triangle */
     GEOMETRY_BEFORE,    /* shadows it */
 };
+/* Whether any corner of triangle `id` lies before the point: if none does, nothing of it can. */
+static inline bool geometry_may_shadow(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint)
+{
+    struct light_triangle t = light_part_triangle(light_mesh_part(&m->mesh, id, hint), id);
+    return light_triangle_wild(&t) || geometry_before(m, t.corner[0]->n, p->n) || geometry_before(m, t.corner[1]->n, p->n) ||
+           geometry_before(m, t.corner[2]->n, p->n);
+}
 enum geometry_verdict geometry_ask(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint);

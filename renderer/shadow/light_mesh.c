@@ -115,6 +115,7 @@ bool light_mesh_project(struct light_mesh *m, const struct scene *scene, const s
     m->scale_y = -(view->height / (view->top - view->bottom));
     m->offset_x = -view->left * m->scale_x;
     m->offset_y = -view->top * m->scale_y;
+    m->nearest = (float)(view->orthographic ? view->far - view->near : 1 / view->near);
     m->rounding = view->orthographic ? (float)((view->far - view->near + fabs(view->far)) * 0x1p-20) : 0;
     if (!find_parts(m, casters, caster_count, err) || !reserve_vertices(m, err))
         return false;
@@ -147,22 +148,6 @@ struct dvec3 light_part_corner(const struct light_mesh *m, const struct light_pa
     return dvec3(dvec3_dot(d, m->view.right), dvec3_dot(d, m->view.up), dvec3_dot(d, m->view.forward));
 }
 
-/* Three numbers of one sign, not all zero, become weights of corners: w_i e_i / sum(w e), w_i the nearness where depth is perspective. */
-static bool weigh(const struct light_mesh *m, const double e[3], const double nearness[3], struct light_hit *out)
-{
-    bool inside = (e[0] >= 0 && e[1] >= 0 && e[2] >= 0) || (e[0] <= 0 && e[1] <= 0 && e[2] <= 0);
-    double sum = e[0] + e[1] + e[2];
-    if (!inside || sum == 0)
-        return false;
-    out->n = (float)((e[0] * nearness[0] + e[1] * nearness[1] + e[2] * nearness[2]) / sum);
-    double total = 0, w[3];
-    for (int i = 0; i < 3; i++)
-        total += w[i] = m->view.orthographic ? e[i] : e[i] * nearness[i];
-    for (int i = 0; i < 3; i++)
-        out->weight[i] = (float)(w[i] / total);
-    return true;
-}
-
 /* Of a wild triangle, by the volumes that the direction through (x, y) spans with each edge: right for corners behind the light too (Olano and
  * Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates"). e[k] belongs to corner k. */
 static void wild_volumes(const struct light_mesh *m, const struct dvec3 c[3], float x, float y, double e[3])
@@ -183,8 +168,8 @@ static void wild_corners(const struct light_mesh *m, const struct light_part *pa
         c[k] = light_part_corner(m, part, id, k);
 }
 
-static bool hit_wild(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,
-                     struct light_hit *out)
+bool light_wild_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,
+                    struct light_hit *out)
 {
     struct dvec3 c[3];
     double e[3];
@@ -233,19 +218,6 @@ struct light_sides light_triangle_sides(const struct light_mesh *m, const struct
         s.edge[k] = s.area < 0 ? -edge : edge;
     }
     return s;
-}
-
-bool light_triangle_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,
-                        struct light_hit *out)
-{
-    struct light_triangle t = light_part_triangle(part, id);
-    if (light_triangle_wild(&t))
-        return hit_wild(m, part, id, x, y, out);
-    const struct light_vertex *a = t.corner[0], *b = t.corner[1], *c = t.corner[2];
-    double ax = (double)a->x - x, ay = (double)a->y - y, bx = (double)b->x - x, by = (double)b->y - y, cx = (double)c->x - x,
-           cy = (double)c->y - y;
-    double e[3] = {bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx}, n[3] = {a->n, b->n, c->n};
-    return weigh(m, e, n, out);
 }
 
 bool light_triangle_solid_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,

@@ -35,6 +35,7 @@ struct light_mesh {
     struct view view;
     double scale_x, scale_y, offset_x, offset_y; /* texels from the picture plane */
     float rounding;                              /* of a nearness, beside 2^-20 of its value */
+    float nearest;                               /* nearness at the map's near plane */
     struct light_part *parts;                    /* ascending ids */
     size_t part_count;
     struct light_vertex *vertices;
@@ -79,6 +80,24 @@ static inline struct light_triangle light_part_triangle(const struct light_part 
     return (struct light_triangle){{&part->vertices[index[0]], &part->vertices[index[1]], &part->vertices[index[2]]}};
 }
 
+/* Triangles of a tile, and a mesh's own order, jump about in memory: what comes some turns later is asked for early. */
+enum { LIGHT_INDICES_AHEAD = 24, LIGHT_VERTICES_AHEAD = 12 };
+
+static inline void light_part_prefetch_indices(const struct light_part *part, uint32_t id)
+{
+    if (id - part->first_triangle < part->triangle_count)
+        __builtin_prefetch(part->indices + 3 * (size_t)(id - part->first_triangle));
+}
+
+static inline void light_part_prefetch_vertices(const struct light_part *part, uint32_t id)
+{
+    if (id - part->first_triangle >= part->triangle_count)
+        return;
+    const uint32_t *index = part->indices + 3 * (size_t)(id - part->first_triangle);
+    for (int k = 0; k < 3; k++)
+        __builtin_prefetch(&part->vertices[index[k]]);
+}
+
 static inline bool light_triangle_wild(const struct light_triangle *t)
 {
     float sum = t->corner[0]->x + t->corner[1]->x + t->corner[2]->x;
@@ -91,9 +110,33 @@ struct light_hit {
     float weight[3]; /* of its corners, perspective-correct; sum 1 */
 };
 
-/* Whether the triangle's projection holds (x, y), edges included; false for triangles of no area. Wild ones too. */
-bool light_triangle_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,
-                        struct light_hit *out);
+/* Wild triangles' part of light_triangle_hit(). */
+bool light_wild_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,
+                    struct light_hit *out);
+
+/* Whether the triangle's projection holds (x, y), edges included; false for triangles of no area. */
+static inline bool light_triangle_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,
+                                      struct light_hit *out)
+{
+    struct light_triangle t = light_part_triangle(part, id);
+    if (light_triangle_wild(&t))
+        return light_wild_hit(m, part, id, x, y, out);
+    const struct light_vertex *a = t.corner[0], *b = t.corner[1], *c = t.corner[2];
+    double ax = (double)a->x - x, ay = (double)a->y - y, bx = (double)b->x - x, by = (double)b->y - y, cx = (double)c->x - x,
+           cy = (double)c->y - y;
+    double e0 = bx * cy - by * cx, e1 = cx * ay - cy * ax, e2 = ax * by - ay * bx, sum = e0 + e1 + e2;
+    bool inside = ((e0 >= 0) & (e1 >= 0) & (e2 >= 0)) | ((e0 <= 0) & (e1 <= 0) & (e2 <= 0));
+    if (!inside || sum == 0)
+        return false;
+    e0 /= sum, e1 /= sum, e2 /= sum;
+    double n = e0 * a->n + e1 * b->n + e2 * c->n;
+    out->n = (float)n;
+    /* Affine in space: where depth is perspective, each weight times the nearness of its corner. */
+    out->weight[0] = (float)(m->view.orthographic ? e0 : e0 * a->n / n);
+    out->weight[1] = (float)(m->view.orthographic ? e1 : e1 * b->n / n);
+    out->weight[2] = (float)(m->view.orthographic ? e2 : e2 * c->n / n);
+    return true;
+}
 
 /* The same, and solid there: holes of its material are holes. */
 bool light_triangle_solid_hit(const struct light_mesh *m, const struct light_part *part, uint32_t id, float x, float y,

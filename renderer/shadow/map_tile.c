@@ -9,10 +9,11 @@
 
 enum { TEXELS = MAP_TILE * MAP_TILE };
 
-/* Ranks: below 0 over the centre, minus the nearness there; else the distance from the centre in texels. The smaller is kept, of equals
- * the lower id. */
-#define RANK_HOLE 0.5f /* covers the centre, with a hole there */
-#define RANK_WILD 1.0f /* touches, for triangles whose distance nobody works out */
+/* Ranks: below 0 over the centre, minus the nearness there; else the distance from the centre in steps, and within a step the nearer to the
+ * light first: of two triangles that meet in an outline, the one that the light sees. The smaller is kept, of equals the first: a tile's triangles come in one order always. */
+#define RANK_STEPS 8.0f /* a texel */
+#define HOLE_AWAY  0.5f /* texels: covers the centre, with a hole there */
+#define WILD_AWAY  1.0f /* texels: triangles whose distance nobody works out */
 
 struct work {
     float nearest[TEXELS], rank[TEXELS];
@@ -24,11 +25,13 @@ struct facet {
     struct conservative cover;
     float n, nx, ny;   /* nearness at texel (x, y)'s centre: n + nx x + ny y */
     float most, slack; /* the nearest corner's; by how much a texel may exceed its centre */
-    float inverse[3];  /* 1 / length of each edge */
+    float inverse[3];  /* RANK_STEPS / length of each edge */
+    float behind;      /* in (0, 1): more for farther from the light */
     uint32_t id;
 };
 
-INLINE bool set_facet(struct facet *f, const struct light_triangle *t, uint32_t id, float left, float top)
+INLINE bool set_facet(const struct geometry_map *m, struct facet *f, const struct light_triangle *t, uint32_t id, float left,
+                      float top)
 {
     float x[3], y[3], n[3];
     for (int k = 0; k < 3; k++) {
@@ -39,7 +42,7 @@ INLINE bool set_facet(struct facet *f, const struct light_triangle *t, uint32_t 
     if (!conservative_setup(&f->cover, x, y, MAP_TILE, MAP_TILE))
         return false;
     f->id = id;
-    f->most = fmaxf(fmaxf(n[0], n[1]), n[2]);
+    f->most = CONSERVATIVE_MOST(n);
     float scale = f->cover.turn / f->cover.area;
     float u = n[1] - n[0], v = n[2] - n[0];
     f->nx = (u * (y[2] - y[0]) - v * (y[1] - y[0])) * scale;
@@ -52,8 +55,9 @@ INLINE bool set_facet(struct facet *f, const struct light_triangle *t, uint32_t 
         f->nx = f->ny = f->slack = 0;
         f->n = f->most;
     }
+    f->behind = m->mesh.nearest / (m->mesh.nearest + (n[0] + n[1] + n[2]) * (1.0f / 3));
     for (int k = 0; k < 3; k++)
-        f->inverse[k] = 1 / sqrtf(f->cover.a[k] * f->cover.a[k] + f->cover.b[k] * f->cover.b[k] + 1e-30f);
+        f->inverse[k] = RANK_STEPS / sqrtf(f->cover.a[k] * f->cover.a[k] + f->cover.b[k] * f->cover.b[k] + 1e-30f);
     return true;
 }
 
@@ -88,35 +92,100 @@ INLINE void mark_row(const struct facet *f, const struct geometry_map *m, const 
         lanes_int before = covered & touched;
         covered = before;
         refuse_holes(m, holes, f->id, left + (float)x, top + (float)y, (int32_t *)&covered);
-        away = LANES_IF(before & ~covered, (lanes_float){} + RANK_HOLE, away);
+        away = LANES_IF(before & ~covered, (lanes_float){} + HOLE_AWAY * RANK_STEPS, away);
     }
+    away = __builtin_convertvector(__builtin_convertvector(away, lanes_int), lanes_float) + f->behind;
     lanes_float near = n + f->slack, most = (lanes_float){} + f->most, rank = LANES_IF(covered, -n, away);
     near = LANES_IF(near < most, near, most);
     size_t at = (size_t)y * MAP_TILE + (size_t)x;
     lanes_float *nearest = (lanes_float *)&w->nearest[at], *ranks = (lanes_float *)&w->rank[at];
     lanes_uint *ids = (lanes_uint *)&w->id[at];
     *nearest = LANES_IF(touched & (near > *nearest), near, *nearest);
-    lanes_int better = touched & ((rank < *ranks) | ((rank == *ranks) & (lanes_int)(f->id < *ids)));
+    lanes_int better = touched & (rank < *ranks);
     *ranks = LANES_IF(better, rank, *ranks);
     *ids = (lanes_uint)LANES_IF(better, (lanes_float)((lanes_uint){} + f->id), (lanes_float)*ids);
+}
+
+/* What of row y the edges leave, a little more than less: most of a long thin triangle's box is empty. */
+struct spans {
+    float at[3], step[3]; /* edge k crosses row y at at + step y */
+    bool left[3], right[3];
+};
+
+INLINE struct spans find_spans(const struct conservative *c)
+{
+    struct spans s;
+    for (int k = 0; k < 3; k++) {
+        float inverse = 1 / c->a[k];
+        s.at[k] = -(c->c[k] + c->reach[k]) * inverse;
+        s.step[k] = -c->b[k] * inverse;
+        /* Steep enough that the crossing is sure to within a texel. */
+        s.left[k] = c->a[k] > 0 && fabsf(s.at[k]) < 1e5f && fabsf(s.step[k]) < 1e3f;
+        s.right[k] = c->a[k] < 0 && fabsf(s.at[k]) < 1e5f && fabsf(s.step[k]) < 1e3f;
+    }
+    return s;
 }
 
 INLINE void mark_facet(const struct facet *f, const struct geometry_map *m, const struct light_part *holes, float left, float top,
                        struct work *w)
 {
-    for (int32_t y = f->cover.y0; y <= f->cover.y1; y++)
-        for (int32_t x = f->cover.x0 & ~(CONSERVATIVE_LANES - 1); x <= f->cover.x1; x += CONSERVATIVE_LANES)
+    const struct conservative *c = &f->cover;
+    int32_t x0 = c->x0 & ~(CONSERVATIVE_LANES - 1);
+    if (c->x1 - x0 < CONSERVATIVE_LANES) {
+        for (int32_t y = c->y0; y <= c->y1; y++)
+            mark_row(f, m, holes, left, top, x0, y, w);
+        return;
+    }
+    struct spans s = find_spans(c);
+    for (int32_t y = c->y0; y <= c->y1; y++) {
+        float from = (float)c->x0, to = (float)c->x1;
+        for (int k = 0; k < 3; k++) {
+            float cross = s.at[k] + s.step[k] * (float)y;
+            from = s.left[k] && cross - 1 > from ? cross - 1 : from;
+            to = s.right[k] && cross + 1 < to ? cross + 1 : to;
+        }
+        if (!(from <= to))
+            continue;
+        for (int32_t x = (int32_t)from & ~(CONSERVATIVE_LANES - 1); x <= (int32_t)to; x += CONSERVATIVE_LANES)
             mark_row(f, m, holes, left, top, x, y, w);
+    }
 }
 
 /* Thin in projection: may have no area at all, and casts nothing then. */
-static bool is_nothing(const struct geometry_map *m, const struct light_part *part, const struct light_triangle *t, float area,
-                       uint32_t id)
+INLINE bool is_nothing(const struct geometry_map *m, const struct light_part *part, const struct facet *f)
 {
-    float extent = 0;
-    for (int k = 0; k < 3; k++)
-        extent = fmaxf(extent, fmaxf(fabsf(t->corner[k]->x - t->corner[0]->x), fabsf(t->corner[k]->y - t->corner[0]->y)));
-    return area <= 1e-4f * extent * extent + 1e-6f && light_part_degenerate(m->mesh.scene, part, id);
+    float longest = CONSERVATIVE_LEAST(f->inverse) * (1 / RANK_STEPS), area = f->cover.area;
+    return (area * longest * longest <= 1e-4f || area <= 1e-6f) && light_part_degenerate(m->mesh.scene, part, f->id);
+}
+
+/* Whether everything in the triangle's box is known to be nearer than its nearest corner: it would change nothing. Half of a closed mesh. */
+INLINE bool is_hidden(const struct light_triangle *t, float left, float top, const struct work *w)
+{
+    float x[3], y[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = t->corner[k]->x - left;
+        y[k] = t->corner[k]->y - top;
+        n[k] = t->corner[k]->n;
+    }
+    const float m = CONSERVATIVE_MARGIN, side = MAP_TILE - 1;
+    float x0 = CONSERVATIVE_LEAST(x) - m, x1 = CONSERVATIVE_MOST(x) + m, y0 = CONSERVATIVE_LEAST(y) - m,
+          y1 = CONSERVATIVE_MOST(y) + m;
+    int32_t column = x0 > 0 ? (int32_t)x0 : 0, end = x1 < side ? (int32_t)x1 : (int32_t)side;
+    int32_t row = y0 > 0 ? (int32_t)y0 : 0, bottom = y1 < side ? (int32_t)y1 : (int32_t)side;
+    if (end - (column & ~(CONSERVATIVE_LANES - 1)) >= CONSERVATIVE_LANES)
+        return false; /* not worth the look */
+    lanes_float most = (lanes_float){} + CONSERVATIVE_MOST(n);
+    lanes_int open = {};
+    int32_t first = column & ~(CONSERVATIVE_LANES - 1), any = 0;
+    lanes_float columns = LANES_COUNT + (float)first;
+    for (; row <= bottom; row++) {
+        const lanes_float *rank = (const lanes_float *)&w->rank[row * (int32_t)MAP_TILE + first];
+        open |= -*rank < most;
+    }
+    open &= (columns >= (float)column) & (columns <= (float)end);
+    for (int k = 0; k < CONSERVATIVE_LANES; k++)
+        any |= open[k];
+    return !any;
 }
 
 INLINE void mark_triangles(const struct geometry_map *m, const uint32_t *triangles, size_t count, float left, float top,
@@ -126,9 +195,15 @@ INLINE void mark_triangles(const struct geometry_map *m, const uint32_t *triangl
     for (size_t i = 0; i < count; i++) {
         uint32_t id = triangles[i];
         const struct light_part *part = light_mesh_part(&m->mesh, id, &hint);
+        if (i + LIGHT_INDICES_AHEAD < count)
+            light_part_prefetch_indices(part, triangles[i + LIGHT_INDICES_AHEAD]);
+        if (i + LIGHT_VERTICES_AHEAD < count)
+            light_part_prefetch_vertices(part, triangles[i + LIGHT_VERTICES_AHEAD]);
         struct light_triangle t = light_part_triangle(part, id);
         struct facet f;
-        if (!set_facet(&f, &t, id, left, top) || is_nothing(m, part, &t, f.cover.area, id))
+        if (is_hidden(&t, left, top, w))
+            continue;
+        if (!set_facet(m, &f, &t, id, left, top) || is_nothing(m, part, &f))
             continue;
         if (part->holes)
             mark_facet(&f, m, part, left, top, w);
@@ -181,10 +256,10 @@ static void mark_wild_texel(const struct geometry_map *m, const struct light_par
             return;
     struct light_hit hit;
     bool covered = light_triangle_solid_hit(&m->mesh, part, id, (float)x, (float)y, &hit);
-    float rank = covered ? -hit.n : RANK_WILD;
+    float rank = covered ? -hit.n : WILD_AWAY * RANK_STEPS + 0.5f;
     float near = f->flat ? (float)f->most : (float)(fmin(highest(f->n, x, y), f->most) * (1 + 0x1p-20));
     w->nearest[at] = fmaxf(w->nearest[at], near);
-    if (rank < w->rank[at] || (rank == w->rank[at] && id < w->id[at])) {
+    if (rank < w->rank[at]) {
         w->rank[at] = rank;
         w->id[at] = id;
     }
