@@ -11,10 +11,11 @@ void main()
     Receiver r;
     bool receives = receiver_at(pixel, r);
     AsmPlace p = asm_place(r.point);
-    bool lit = true;
-    if (receives && p.map >= 0) {
-        uint id = texelFetch(ids, pixel, 0).x;
-        lit = asm_lit(p, asm_leaf(p.root, p.place, ASM_LEVELS), id, r.tangent, PARAM(SLOPE));
-    }
-    visibility = receives && lit ? 1.0 : 0.0;
+    AsmLeaf leaf = asm_leaf(p.root, p.map < 0 ? ivec2(0) : p.place, receives && p.map >= 0 ? ASM_LEVELS : 0);
+    bool dark = receives && p.map >= 0 && !asm_nearest(p, leaf, r.tangent, PARAM(SLOPE));
+    /* The test by triangle comes second here and last in no answer: it can only make a point lit. A loop, not a condition: software
+     * rasterizers leave it when no lane is in it. */
+    for (int once = 0; once < (dark ? 1 : 0); once++)
+        dark = texelFetch(asm_ids, leaf.texel, 0).x != texelFetch(ids, pixel, 0).x;
+    visibility = receives && !dark ? 1.0 : 0.0;
 }

@@ -65,7 +65,7 @@ AsmLeaf asm_leaf(ivec2 root, ivec2 place, int limit)
         child = leaf.level < limit ? int(texelFetch(asm_table, leaf.slot * 16 + leaf.cell).x) : 0;
     }
     ivec2 within = (place >> (shift - 2)) & 15;
-    leaf.texel = ivec2(leaf.slot % ASM_COLUMNS, leaf.slot / ASM_COLUMNS) * ASM_PAGE + within;
+    leaf.texel = ivec2(leaf.slot & (ASM_COLUMNS - 1), leaf.slot / ASM_COLUMNS) * ASM_PAGE + within;
     return leaf;
 }
 
@@ -80,13 +80,17 @@ float asm_bias(AsmPlace p, int level, float tangent, float slope)
     return PARAM(BIAS) + slope * asm_texel_size(p) * asm_level_scale(level) * min(tangent, TANGENT_MAX);
 }
 
-/* First by triangle, then by depth (Fernando et al. 2001, section "combining ID and depth"): the point's own triangle does not shadow it. */
-bool asm_lit(AsmPlace p, AsmLeaf leaf, uint id, float tangent, float slope)
+/* Does the leaf see nothing before the point? */
+bool asm_nearest(AsmPlace p, AsmLeaf leaf, float tangent, float slope)
 {
     float stored = texelFetch(asm_depths, leaf.texel, 0).x;
-    uint seen = texelFetch(asm_ids, leaf.texel, 0).x;
     float depth = p.depth - asm_bias(p, leaf.level, tangent, slope);
-    bool near = MAP_PERSPECTIVE != 0 ? stored * depth <= p.range.x
-                                     : stored == 0.0 || depth <= p.range.y - stored * (p.range.y - p.range.x);
-    return near || seen == id;
+    return MAP_PERSPECTIVE != 0 ? stored * depth <= p.range.x
+                                : stored == 0.0 || depth <= p.range.y - stored * (p.range.y - p.range.x);
+}
+
+/* By triangle, else by depth (Fernando et al. 2001, section "combining ID and depth"): the point's own triangle does not shadow it. */
+bool asm_lit(AsmPlace p, AsmLeaf leaf, uint id, float tangent, float slope)
+{
+    return texelFetch(asm_ids, leaf.texel, 0).x == id || asm_nearest(p, leaf, tangent, slope);
 }

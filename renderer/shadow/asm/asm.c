@@ -20,6 +20,8 @@
 
 /* Rounds of the analysis after which a view counts as done, come what may. */
 #define ROUNDS_MAX 32
+/* Fewer leave no room below six roots. */
+#define SLOTS_MIN  (2 * ASM_COLUMNS)
 
 enum { PARAM_BUDGET, PARAM_FIT, PARAM_BIAS, PARAM_SLOPE, PARAM_DETAIL, PARAM_ANALYSE, PARAM_PACE };
 
@@ -85,34 +87,52 @@ static size_t fixed_bytes(const struct shadow_input *in)
     return asm_pages_fixed_bytes() + asm_refine_bytes() + rasterizing + sizeof(struct asm_block) + sizeof(struct state) + 64;
 }
 
+static size_t slot_bytes(void) { return asm_tree_slot_bytes() + asm_pages_slot_bytes() + asm_analysis_slot_bytes(); }
+
 /* Slots that the budget allows, 0: not even a row of them. */
 static uint32_t slots_for(const struct shadow_input *in, size_t *budget)
 {
-    size_t slot = asm_tree_slot_bytes() + asm_pages_slot_bytes() + asm_analysis_slot_bytes(), fixed = fixed_bytes(in);
+    size_t fixed = fixed_bytes(in);
     *budget = (size_t)in->params[PARAM_BUDGET] << 20;
     if (in->memory && in->memory < *budget)
         *budget = in->memory;
-    size_t slots = *budget > fixed ? (*budget - fixed) / slot : 0;
+    size_t slots = *budget > fixed ? (*budget - fixed) / slot_bytes() : 0;
     return (uint32_t)(slots / ASM_COLUMNS * ASM_COLUMNS);
+}
+
+static void release(struct state *s)
+{
+    asm_tree_finish(&s->tree);
+    asm_pages_finish(&s->pages);
+    asm_analysis_finish(&s->analysis);
+    asm_refine_finish(&s->refine);
+    gl_buffer_finish(&s->block);
+}
+
+static bool make_room(struct state *s, const struct shadow_input *in, uint32_t slots, struct error *err)
+{
+    return asm_tree_init(&s->tree, in->gl, slots, err) && asm_pages_init(&s->pages, in->gl, slots, err) &&
+           asm_analysis_init(&s->analysis, in->gl, slots, err) && asm_refine_init(&s->refine, err);
+}
+
+static bool plant(struct state *s, const struct shadow_input *in, struct error *err)
+{
+    asm_tree_plant(&s->tree, in->fit->maps, in->fit->map_count);
+    return asm_pages_fill_roots(&s->pages, &s->tree, in, err) && asm_pace_measure(&s->pace, &s->pages, &s->tree, in, err);
 }
 
 static bool set_up(struct state *s, const struct shadow_input *in, struct error *err)
 {
-    size_t budget;
+    size_t budget, least = fixed_bytes(in) + SLOTS_MIN * slot_bytes();
     uint32_t slots = slots_for(in, &budget);
-    if (slots < 2 * ASM_COLUMNS)
+    if (slots < SLOTS_MIN)
         return error_set(err, ERROR_TRY_AGAIN, "budget",
-                         "%zu bytes are too few for the shadows of this scene; allow at least %zu", budget,
-                         fixed_bytes(in) + 2 * ASM_COLUMNS * ((size_t)2300));
-    bool ok = asm_tree_init(&s->tree, in->gl, slots, err) && asm_pages_init(&s->pages, in->gl, slots, err) &&
-              asm_analysis_init(&s->analysis, in->gl, slots, err) && asm_refine_init(&s->refine, err);
-    if (!ok)
-        return false;
-    asm_tree_plant(&s->tree, in->fit->maps, in->fit->map_count);
-    ok = asm_pages_fill_roots(&s->pages, &s->tree, in, err) && asm_pace_measure(&s->pace, &s->pages, &s->tree, in, err);
+                         "%zu bytes are too few for the shadows of this scene; at least %zu will do", budget, least);
+    s->ready = make_room(s, in, slots, err) && plant(s, in, err);
     log_debug("a page costs %g us a texel and %g us; taken as %g us", s->pace.texel_us, s->pace.page_us, s->pace.cost_us);
-    s->ready = ok;
-    return ok;
+    if (!s->ready)
+        release(s);
+    return s->ready;
 }
 
 static bool same_view(const struct view *a, const struct view *b)
@@ -251,17 +271,14 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
         return shadow_run_full_screen(in, "none.frag", NULL, err);
     snprintf(defines, sizeof defines, "MAPS %u\nMAP_PERSPECTIVE %d\n", s->tree.map_count, !s->tree.maps[0].orthographic);
     return bind(s, in, err) && shadow_run_full_screen(in, "asm.frag", defines, err) &&
-           (s->converged || asm_analysis_start(&s->analysis, in, defines, (unsigned)in->params[PARAM_ANALYSE], err));
+           (s->converged || s->analysis.fence ||
+            asm_analysis_start(&s->analysis, in, defines, (unsigned)in->params[PARAM_ANALYSE], err));
 }
 
 static void finish(void *state)
 {
     struct state *s = state;
-    asm_tree_finish(&s->tree);
-    asm_pages_finish(&s->pages);
-    asm_analysis_finish(&s->analysis);
-    asm_refine_finish(&s->refine);
-    gl_buffer_finish(&s->block);
+    release(s);
     memset(s, 0, sizeof *s);
 }
 
