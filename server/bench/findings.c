@@ -145,8 +145,11 @@ static void say_hard(struct bench_findings *f, const struct bench_plan *plan, un
     }
 }
 
+/* Setups that only scaling tables show would weigh too much. */
 static bool shown_in_rows(const struct bench_plan *plan, size_t setup)
 {
+    if (plan->setups.data[setup].lights || plan->setups.data[setup].width != plan->width)
+        return false;
     for (size_t i = 0; i < plan->cells.count; i++)
         for (unsigned t = 0; plan->suite->tables[t]; t++)
             if (plan->cells.data[i].setup == setup && plan->cells.data[i].tables & 1u << t &&

@@ -102,7 +102,8 @@ size_t bench_goals_check(const struct bench_plan *plan, struct goal_result *out,
         for (size_t s = 0; s < plan->setups.count && count < max; s++) {
             const struct bench_setup *setup = &plan->setups.data[s];
             double value = value_of(plan, g, s);
-            if (isnan(value) || (g->scene && !model_is(g->scene, setup->scene)))
+            bool meant = setup->lights == 0 && setup->width == plan->width && setup->height == plan->height;
+            if (!meant || isnan(value) || (g->scene && !model_is(g->scene, setup->scene)))
                 continue;
             out[count] = (struct goal_result){
                 .goal = g, .setup = setup, .value = value, .met = at_least(g) ? value >= g->bound : value <= g->bound};

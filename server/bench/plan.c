@@ -214,6 +214,19 @@ static bool add_figure(struct builder *b, const struct bench_figure *figure)
     return add_algorithms(b, &setup, figure->algorithms);
 }
 
+/* Whether the comma-separated `list` has `name`; NULL has all. */
+static bool listed(const char *list, const char *name)
+{
+    size_t length = strlen(name);
+    while (list && *list) {
+        size_t word = strcspn(list, ",");
+        if (word == length && !strncmp(list, name, length))
+            return true;
+        list += word + (list[word] == ',');
+    }
+    return !list;
+}
+
 static bool add_everything(struct bench_plan *plan, const struct bench_options *options, struct error *err)
 {
     const struct bench_suite *suite = options->suite;
@@ -221,10 +234,10 @@ static bool add_everything(struct bench_plan *plan, const struct bench_options *
         struct builder b = {.plan = plan, .options = options, .err = err};
         b.table = 1u << i;
         b.measures = suite->tables[i]->measures;
-        if (!add_table(&b, suite->tables[i]))
+        if (listed(options->tables, suite->tables[i]->name) && !add_table(&b, suite->tables[i]))
             return false;
     }
-    for (unsigned i = 0; options->pictures && suite->figures && suite->figures[i]; i++) {
+    for (unsigned i = 0; options->pictures && !options->tables && suite->figures && suite->figures[i]; i++) {
         struct builder b = {.plan = plan, .options = options, .err = err};
         b.figure = 1u << i;
         b.measures = MEASURE_POINT;
@@ -296,8 +309,9 @@ bool bench_plan_init(struct bench_plan *plan, const struct bench_options *option
     if (!add_everything(plan, options, err))
         return false;
     if (plan->cells.count == 0)
-        return error_set(err, ERROR_USAGE, "filter",
-                         "nothing in the suite has that in its scene or algorithm; without --filter all is run");
+        return error_set(
+            err, ERROR_USAGE, "filter",
+            "nothing of the suite is left: no such table, scene or algorithm; without --filter and --tables all is run");
     return sort_cells(plan, err);
 }
 

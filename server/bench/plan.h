@@ -19,6 +19,7 @@ struct bench_options {
     const struct bench_suite *suite;
     const char *models; /* folder; NULL: built-in scenes only */
     const char *filter; /* keeps what has it in its scene or algorithm; several, separated by commas, must all match; NULL: all */
+    const char *tables; /* names, separated by commas: the other tables, and the figures, are left out; NULL: all */
     unsigned frames;    /* 0: the suite's */
     uint32_t width, height; /* 0: the suite's */
     bool quick;

@@ -82,6 +82,13 @@ static bool set_filter(void *target, const char *value, struct error *err)
     return true;
 }
 
+static bool set_tables(void *target, const char *value, struct error *err)
+{
+    (void)err;
+    ((struct bench_command *)target)->bench.tables = value;
+    return true;
+}
+
 static bool set_frames(void *target, const char *value, struct error *err)
 {
     unsigned long n;
@@ -129,6 +136,7 @@ static const struct option option_table[] = {
     {"csv", "FILE", "a line for each cell; - is standard output", set_csv},
     {"html", "FILE", "the report: one page that needs nothing else; - is standard output", set_html},
     {"filter", "WORDS", "only what has each of the words (separated by commas) in its scene's or algorithm's name", set_filter},
+    {"tables", "NAMES", "only these tables of the suite (as its JSON names them), separated by commas", set_tables},
     {"frames", "N", "timed frames of each cell, 1 to 1000; slow ones get fewer (default: the suite's)", set_frames},
     {"size", "WxH", "picture size (default: the suite's)", set_size},
     {"quick", NULL, "small pictures, few frames, light models, no maps over 2048: a first look", set_quick},

@@ -8,6 +8,7 @@ says '^Usage: gnomon bench '
 bad 64 'smoke, paper, hard or full\|are accepted' bench --suite no_such_suite
 bad 64 '1 to 1000' bench --frames 0
 bad 64 'without --filter' bench --filter no_such_word
+bad 64 'no such table' bench --tables no_such_table
 bad 64 'readable folder' bench --models /no/such/folder
 bad 64 'one FILE may be -' bench --json - --csv -
 bad 64 'models, builtin or none' bench --pictures all
