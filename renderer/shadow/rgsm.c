@@ -1,4 +1,4 @@
-/* Reconstructable geometry shadow map (Dai, Yang and Li 2014; papers/coverage-li-2017, reference 18): each texel names the triangle seen through
+/* Reconstructable geometry shadow map (as Li et al. 2017, papers/coverage-li-2017, tell of their reference 18): each texel names the triangle seen through
  * its centre, and a point is tested against the plane of that triangle at its own position, so the test is continuous over a texel. */
 #include <math.h>
 

@@ -34,7 +34,8 @@ static void check(struct scene *scene, const uint32_t *expected)
 static void test_positions_join(void **state)
 {
     (void)state;
-    const float points[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, -0.0f}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
+    const float points[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, -0.0f}, {1, 1, 0},
+                                {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
     const uint32_t expected[9] = {SCENE_NONE, 1, SCENE_NONE, 2, SCENE_NONE, 0, SCENE_NONE, SCENE_NONE, 1};
     check(scene_of(points, 9), expected);
 }
@@ -42,7 +43,8 @@ static void test_positions_join(void **state)
 static void test_edges_of_three_join_none(void **state)
 {
     (void)state;
-    const float points[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    const float points[9][3] = {{0, 0, 0},  {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0},
+                                {0, -1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
     const uint32_t expected[9] = {SCENE_NONE, SCENE_NONE, SCENE_NONE, SCENE_NONE, SCENE_NONE,
                                   SCENE_NONE, SCENE_NONE, SCENE_NONE, SCENE_NONE};
     check(scene_of(points, 9), expected);
