@@ -7,14 +7,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = UNIT_IDS) uniform usampler2D ids;
 
-/* For each cell of each slot: pixels that want a page there. Then for each slot: pixels that would want it, were it not there; frames
- * in which a pixel used it. Then for each level: pixels at a shadow's boundary that found it. */
+/* For each cell of each slot: the benefit of a page there, over all pixels. Then for each slot: what its page's would be, were it not
+ * there; whether a pixel used it. Then for each level: pixels at a shadow's boundary that found it. */
 layout(std430, binding = 0) buffer counters
 {
     uint counter[];
 };
 
 const int DARK = 0, LIT = 1, IN_DOUBT = 2;
+/* Benefit of a finer page to a pixel: an edge that is seen comes before one that may be there. */
+const uint EDGE = 4u, DOUBT = 1u;
 
 /* What a leaf says of the point. In doubt: it hangs on the bias, lit only for it or dark by less than as much again. */
 int answer(AsmPlace p, AsmLeaf leaf, uint id, float tangent, float slope)
@@ -42,29 +44,28 @@ bool is_ambiguous(AsmPlace p, int level, ivec2 toward, uint id, float tangent)
     return !same;
 }
 
-/* The same of texels larger than a pixel, more warily: what is smaller than they are may lie between them, and their bias is large, so that all
+/* EDGE, DOUBT or 0: the same of texels larger than a pixel, more warily. What is smaller than they are may lie between them; their bias is large, so all
  * may agree on an answer that is wrong: at the foot of things, in folds. So all next to the place's own count, and doubt is enough. */
-bool is_doubtful(AsmPlace p, int level, ivec2 toward, uint id, float tangent)
+uint edge_or_doubt(AsmPlace p, int level, ivec2 toward, uint id, float tangent)
 {
     ivec2 last = ivec2(asm_counts.x - 1);
-    int own = answer(p, asm_leaf(p.root, p.place, level), id, tangent, PARAM(SLOPE));
-    bool same = own != IN_DOUBT;
-    for (int i = 0; i < 9 && same; i++) {
+    int own = answer(p, asm_leaf(p.root, p.place, level), id, tangent, PARAM(SLOPE)), found = 1 << own;
+    for (int i = 0; i < 9 && found != 3 && found != 7; i++) {
         ivec2 beside = clamp(p.place + ivec2(i % 3 - 1, i / 3 - 1) * toward, ivec2(0), last);
-        same = answer(p, asm_leaf(p.root, beside, level), id, tangent, PARAM(SLOPE)) == own;
+        found |= 1 << answer(p, asm_leaf(p.root, beside, level), id, tangent, PARAM(SLOPE));
     }
-    return !same;
+    return (found & 3) == 3 ? EDGE : (found & 4) != 0 ? DOUBT : 0u;
 }
 
-/* Would the pixel have finer texels than those of `level`? */
-bool wants_finer(AsmPlace p, int level, float too_large, uint id, float tangent)
+/* What finer texels than those of `level` would be to the pixel. */
+uint wants_finer(AsmPlace p, int level, float too_large, uint id, float tangent)
 {
     float rest = too_large * exp2(float(-4 * level));
     int texel = 1 << (FINEST - 2 * level), half_bit = max(texel >> 1, 1);
     ivec2 toward = ivec2((p.place.x & half_bit) != 0 ? texel : -texel, (p.place.y & half_bit) != 0 ? texel : -texel);
     if (rest > PARAM(DETAIL) * PARAM(DETAIL))
-        return is_doubtful(p, level, toward, id, tangent);
-    return rest > 1.0 && is_ambiguous(p, level, toward, id, tangent);
+        return edge_or_doubt(p, level, toward, id, tangent);
+    return rest > 1.0 && is_ambiguous(p, level, toward, id, tangent) ? EDGE : 0u;
 }
 
 /* Times by which a root texel's area exceeds what is wanted: a pixel's footprint on the surface, seen from the light, over detail^2. */
@@ -116,10 +117,12 @@ void main()
     int slots = asm_counts.y;
     counter[slots * 17 + leaf.slot] = 1u;
     float too_large = excess(p, r, pixel);
-    if (leaf.level < ASM_LEVELS && wants_finer(p, leaf.level, too_large, id, r.tangent))
-        atomicAdd(counter[leaf.slot * 16 + leaf.cell], 1u);
-    if (leaf.level > 0 && wants_finer(p, leaf.level - 1, too_large, id, r.tangent))
-        atomicAdd(counter[slots * 16 + leaf.slot], 1u);
+    uint benefit = leaf.level < ASM_LEVELS ? wants_finer(p, leaf.level, too_large, id, r.tangent) : 0u;
+    if (benefit > 0u)
+        atomicAdd(counter[leaf.slot * 16 + leaf.cell], benefit);
+    uint worth = leaf.level > 0 ? wants_finer(p, leaf.level - 1, too_large, id, r.tangent) : 0u;
+    if (worth > 0u)
+        atomicAdd(counter[slots * 16 + leaf.slot], worth);
     int here = asm_lit(p, leaf, id, r.tangent, PARAM(SLOPE)) ? 1 : 0;
     if (at_boundary(pixel, here))
         atomicAdd(counter[slots * 18 + leaf.level], 1u);
