@@ -13,7 +13,7 @@ layout(binding = UNIT_PIXELS) uniform usampler2D pixels;
 layout(binding = UNIT_SOFT_TERM) uniform usampler2D terms;
 layout(binding = UNIT_SOFT_RADIUS) uniform usampler2D radii;
 
-const int TAPS = 10;         /* a side, at most */
+const int TAPS = 6;         /* a side, at most */
 const float WIDTH = 2.5;     /* standard deviations a side */
 const float BEND = 0.25;     /* by how much the surface may leave its plane, of the distance */
 const float FLAT_PIXELS = 2.0; /* and anywhere */
