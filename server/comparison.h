@@ -20,15 +20,15 @@ struct comparison {
     uint32_t *ids;                      /* drawn triangles, as the camera pass wrote them */
     float *tested[RENDERER_LIGHTS_MAX]; /* visibility, [0,1] */
     float *truth[RENDERER_LIGHTS_MAX];
-    uint8_t *receiver[RENDERER_LIGHTS_MAX];         /* 1 where the pixel counts */
-    uint8_t *one_triangle;                          /* 1 where all 32 samples see the same triangle */
-    struct sample_masks masks[RENDERER_LIGHTS_MAX]; /* tested, where the system decides each sample; else NULL */
+    uint8_t *receiver[RENDERER_LIGHTS_MAX];               /* 1 where the pixel counts */
+    uint8_t *one_triangle;                                /* 1 where all 32 samples see the same triangle */
+    struct sample_masks masks[RENDERER_LIGHTS_MAX];       /* tested, where the system decides each sample; else NULL */
     struct sample_masks truth_masks[RENDERER_LIGHTS_MAX]; /* of samples32; else NULL */
-    int64_t wrong_samples[RENDERER_LIGHTS_MAX];     /* against samples32, of systems with masks; else -1 */
+    int64_t wrong_samples[RENDERER_LIGHTS_MAX];           /* against samples32, of systems with masks; else -1 */
     struct shadow_figure figures[RENDERER_LIGHTS_MAX][SHADOW_FIGURES_MAX]; /* what the system tells of itself */
     size_t figure_count[RENDERER_LIGHTS_MAX];
     struct list_reading lists[RENDERER_LIGHTS_MAX];
-    bool without_lists; /* they are not taken */
+    bool without_lists;       /* they are not taken */
     unsigned converge_frames; /* how many the tested picture took ... */
     bool converged;           /* ... and whether that was enough */
     struct metrics light[RENDERER_LIGHTS_MAX];
