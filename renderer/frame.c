@@ -167,6 +167,7 @@ bool frame_render(struct renderer *r, struct render_scene *s, const struct rende
 {
     unsigned aa_side = settings->aa == 16 ? 4 : settings->aa == 4 ? 2 : 1;
     struct view view = view_from_camera(&settings->camera, settings->width * aa_side, settings->height * aa_side);
+    view_limit_far(&view, &s->scene->bounds);
     struct shadow_input inputs[RENDERER_LIGHTS_MAX];
     gl_timer_begin(&r->timer, settings->finish_each_pass);
     bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, err) && run_camera(r, s, settings, info, err) &&

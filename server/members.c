@@ -151,7 +151,7 @@ bool members_read(const json_t *object, const char *where, const struct member *
 {
     given->bits = 0;
     if (object && !json_is_object(object))
-        return error_set(err, ERROR_USAGE, where, "%s: an object with named members is wanted; arrays are not accepted",
+        return error_set(err, ERROR_USAGE, where, "%s: an object with named members is wanted; only { ... } is accepted",
                          *where ? where : "params");
     if (!refuse_unknown(object, where, table, err))
         return false;

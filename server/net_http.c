@@ -17,8 +17,8 @@ static const char *reason_phrase(int status)
     case 403: return "this Host or Origin may not talk to this server\n";
     case 404: return "not found\n";
     case 405: return "this method is not known here\n";
-    case 411: return "Content-Length is needed\n";
-    case 413: return "the body is too long\n";
+    case 411: return "a Content-Length is needed; chunked bodies are not accepted\n";
+    case 413: return "the body is too long; at most 1 MiB is accepted\n";
     default: return "refused\n";
     }
 }

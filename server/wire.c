@@ -104,6 +104,18 @@ bool wire_read_lights(const struct scene *scene, const json_t *value, struct ren
     return true;
 }
 
+bool wire_read_algorithm(const char *text, struct render_settings *settings, struct error *err)
+{
+    if (shadow_parse(text, &settings->system, &settings->params, err))
+        return true;
+    if (strcmp(err->field, "algorithm") != 0) {
+        char key[sizeof err->field];
+        memcpy(key, err->field, sizeof key);
+        snprintf(err->field, sizeof err->field, "algorithm.%.40s", key);
+    }
+    return false;
+}
+
 bool wire_read_exposure(const json_t *value, struct render_settings *settings, struct error *err)
 {
     const char *text = json_string_value(value);

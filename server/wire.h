@@ -22,6 +22,9 @@ bool wire_read_light(const struct scene *scene, const json_t *value, const struc
 /* An array of new lights; replaces those in `settings`. */
 bool wire_read_lights(const struct scene *scene, const json_t *value, struct render_settings *settings, struct error *err);
 
+/* "NAME[:key=value,...]". Errors about one of its parameters say algorithm.KEY: a request has a `size` of its own. */
+bool wire_read_algorithm(const char *text, struct render_settings *settings, struct error *err);
+
 /* A number of stops, or "auto". */
 bool wire_read_exposure(const json_t *value, struct render_settings *settings, struct error *err);
 

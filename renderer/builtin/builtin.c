@@ -73,7 +73,7 @@ static const struct builtin_scene *find_scene(struct text name, struct error *er
         snprintf(known + used, sizeof known - used, "%s%s", models++ > 0 ? ", " : "", builtin_list[i]->name);
     }
     error_set(
-        err, ERROR_USAGE, "scene",
+        err, ERROR_NO_INPUT, "scene",
         "unknown built-in scene '%.*s'; known are %s and the hard cases hard-01-grazing to hard-25-sheets (gnomon list scenes)",
         name.length > 60 ? 60 : name.length, name.start, known);
     return NULL;
@@ -96,7 +96,7 @@ static int find_param(const struct builtin_scene *scene, struct text key, struct
             return i;
     char known[200];
     list_params(scene, known, sizeof known);
-    error_set(err, ERROR_USAGE, "scene", "builtin:%s has no parameter '%.*s'; it takes: %s", scene->desc.name,
+    error_set(err, ERROR_USAGE, "scene", "builtin:%s has no parameter '%.*s'; it takes %s", scene->desc.name,
               key.length > 60 ? 60 : key.length, key.start, known);
     return -1;
 }

@@ -24,6 +24,6 @@ struct builtin_desc {
 extern const struct builtin_desc *const builtin_list[];
 extern const size_t builtin_count;
 
-/* `name` without "builtin:", with parameters: "dragon:triangles=100000". The result is finished. Errors (ERROR_USAGE) list
- * what would be accepted. The same name gives the same bits every time. */
+/* `name` without "builtin:", with parameters: "dragon:triangles=100000". The result is finished. Errors (ERROR_NO_INPUT: no such
+ * scene; ERROR_USAGE: its parameters) list what would be accepted. The same name gives the same bits every time. */
 struct scene *builtin_make(const char *name, struct error *err);

@@ -280,7 +280,8 @@ bool gl_context_init(struct gl_context *gl, const struct gl_context_options *opt
         return error_set(err, ERROR_NO_DEVICE, "device",
                          "no device '%s': give an index of `gnomon list devices`, a DRM node, cuda:N or software",
                          options->device);
-    return error_set(err, ERROR_NO_DEVICE, "device", "no device gives an OpenGL 4.5 core context (%s)", story);
+    return error_set(err, ERROR_NO_DEVICE, "device",
+                     "no device gives an OpenGL 4.5 core context (%s); `gnomon list devices` prints those that do", story);
 }
 
 void gl_context_finish(struct gl_context *gl) { close_context(gl); }

@@ -50,7 +50,7 @@ bytes read_regular(int fd, const char *what, uint64_t limit)
     if (fstat(fd, &info) != 0)
         fail_with(ERROR_IO, "%s cannot be read: %s", what, strerror(errno));
     if (!S_ISREG(info.st_mode))
-        fail("%s is not a regular file", what);
+        fail("%s is not a regular file; only regular files are read", what);
     if (static_cast<uint64_t>(info.st_size) > limit)
         fail("%s has %llu bytes, at most %llu are accepted", what, static_cast<unsigned long long>(info.st_size),
              static_cast<unsigned long long>(limit));

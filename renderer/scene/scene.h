@@ -152,8 +152,8 @@ struct scene {
     uint64_t hash;               /* of everything that a picture depends on */
 };
 
-/* Loads a .gltf/.glb path or `builtin:NAME[:key=value,...]`. Errors: ERROR_NO_INPUT (no such file), ERROR_DATA, ERROR_USAGE (unknown
- * built-in or parameter). The caller frees with scene_destroy(). */
+/* Loads a .gltf/.glb path or `builtin:NAME[:key=value,...]`. Errors: ERROR_NO_INPUT (no such file or
+ * built-in), ERROR_DATA, ERROR_USAGE (a built-in's parameters). The caller frees with scene_destroy(). */
 struct scene *scene_load(const char *name, struct error *err);
 
 /* Accepts NULL and half-made scenes (every array is malloc'd or NULL). */

@@ -23,6 +23,17 @@ struct view view_from_camera(const struct camera *c, uint32_t width, uint32_t he
     };
 }
 
+void view_limit_far(struct view *v, const struct dbox *bounds)
+{
+    if (!v->orthographic)
+        return;
+    double radius = dbox_radius(bounds);
+    double end = dbox_is_empty(bounds) ? v->near : dvec3_dot(dvec3_sub(dbox_center(bounds), v->eye), v->forward) + 1.01 * radius;
+    /* Never empty, not even where all lies before near. */
+    double least = v->near + fmax(radius, 1e-6 * fmax(fabs(v->near), 1));
+    v->far = fmin(v->far, fmax(end, least));
+}
+
 bool view_project(const struct view *v, struct dvec3 p, double *x, double *y, double *depth)
 {
     struct dvec3 d = dvec3_sub(p, v->eye);

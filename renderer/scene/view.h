@@ -28,6 +28,10 @@ struct view {
 /* Camera `c` filling width x height: the vertical extent is the camera's, the horizontal follows the picture's shape. */
 struct view view_from_camera(const struct camera *c, uint32_t width, uint32_t height);
 
+/* Parallel rays store their depth evenly between near and far, so a far end that lies far behind everything, or nowhere (INFINITY), would
+ * leave no precision: pulls it to just behind `bounds`, which may be empty. Perspective views stay as they are. */
+void view_limit_far(struct view *v, const struct dbox *bounds);
+
 /* The ray through picture position (x, y): a point is origin + t * direction, and t is its depth along view.forward
  * (direction is not unit length; its component along forward is 1). Perspective: origin = eye. */
 static inline void view_ray(const struct view *v, double x, double y, struct dvec3 *origin, struct dvec3 *direction)

@@ -36,7 +36,7 @@ static bool unknown_param(const struct shadow_system *system, const char *key, s
         append(list, sizeof list, i ? ", " : "");
         append(list, sizeof list, system->params[i].name);
     }
-    return error_set(err, ERROR_USAGE, key[0] ? key : "algorithm", "%s has no parameter '%s': it takes %s", system->name, key,
+    return error_set(err, ERROR_USAGE, key[0] ? key : "algorithm", "%s has no parameter '%.60s'; it takes %s", system->name, key,
                      list[0] ? list : "none");
 }
 
@@ -52,7 +52,8 @@ static bool parse_choice(const struct shadow_system *system, const struct param_
         append(list, sizeof list, i ? ", " : "");
         append(list, sizeof list, p->choices[i]);
     }
-    return error_set(err, ERROR_USAGE, p->name, "%s: %s=%s is none of its choices: %s", system->name, p->name, value, list);
+    return error_set(err, ERROR_USAGE, p->name, "%s: %s=%.60s is not known; choose one of %s", system->name, p->name, value,
+                     list);
 }
 
 static bool parse_number(const struct shadow_system *system, const struct param_desc *p, const char *value, double *out,
@@ -64,7 +65,8 @@ static bool parse_number(const struct shadow_system *system, const struct param_
     bool whole = p->kind != PARAM_INT || number == floor(number);
     bool odd = !p->odd || fmod(number, 2) == 1;
     if (end == value || *end || !decimal || !isfinite(number) || number < p->min || number > p->max || !whole || !odd)
-        return error_set(err, ERROR_USAGE, p->name, "%s: %s=%s is not %s %.9g to %.9g%s%s", system->name, p->name, value,
+        return error_set(err, ERROR_USAGE, p->name, "%s: %s=%.60s is not possible; %s %.9g to %.9g%s%s is accepted", system->name,
+                         p->name, value,
                          p->odd                 ? "an odd number from"
                          : p->kind == PARAM_INT ? "a whole number from"
                                                 : "a number from",
@@ -91,7 +93,7 @@ static bool unknown_system(const char *name, int length, struct error *err)
         append(list, sizeof list, i ? ", " : "");
         append(list, sizeof list, shadow_systems[i]->name);
     }
-    return error_set(err, ERROR_USAGE, "algorithm", "no algorithm '%.*s': choose one of %s", length, name, list);
+    return error_set(err, ERROR_USAGE, "algorithm", "no algorithm '%.*s'; choose one of %s", length, name, list);
 }
 
 /* One "key=value" of `length` characters. */
@@ -100,12 +102,14 @@ static bool parse_pair(const struct shadow_system *system, struct shadow_params 
 {
     char pair[128];
     if (length >= sizeof pair)
-        return error_set(err, ERROR_USAGE, "algorithm", "%s: parameter '%.40s...' is too long", system->name, text);
+        return error_set(err, ERROR_USAGE, "algorithm", "%s: parameter '%.40s...' is too long; NAME[:key=value,...] is accepted",
+                         system->name, text);
     memcpy(pair, text, length);
     pair[length] = 0;
     char *equals = strchr(pair, '=');
     if (!equals)
-        return error_set(err, ERROR_USAGE, "algorithm", "%s: '%s' is not key=value", system->name, pair);
+        return error_set(err, ERROR_USAGE, "algorithm", "%s: '%s' is not key=value; NAME[:key=value,...] is accepted",
+                         system->name, pair);
     *equals = 0;
     return shadow_param_parse(system, params, pair, equals + 1, err);
 }

@@ -30,7 +30,7 @@ static bool apply_picture(const struct scene *scene, const struct params *p, str
 {
     if (is_given(given, PARAM_LIGHTS) && !wire_read_lights(scene, p->lights, settings, err))
         return false;
-    if (is_given(given, PARAM_ALGORITHM) && !shadow_parse(p->algorithm, &settings->system, &settings->params, err))
+    if (is_given(given, PARAM_ALGORITHM) && !wire_read_algorithm(p->algorithm, settings, err))
         return false;
     if (is_given(given, PARAM_EXPOSURE) && !wire_read_exposure(p->exposure, settings, err))
         return false;

@@ -29,7 +29,7 @@ static bool apply_picture(struct view_record *view, const struct params *p, stru
     struct render_settings *settings = &view->state.settings;
     if (is_given(given, PARAM_LIGHTS) && !wire_read_lights(view->scene->scene, p->lights, settings, err))
         return false;
-    if (is_given(given, PARAM_ALGORITHM) && !shadow_parse(p->algorithm, &settings->system, &settings->params, err))
+    if (is_given(given, PARAM_ALGORITHM) && !wire_read_algorithm(p->algorithm, settings, err))
         return false;
     if (is_given(given, PARAM_EXPOSURE) && !wire_read_exposure(p->exposure, settings, err))
         return false;

@@ -259,27 +259,29 @@ static void test_degenerate_keeps_bounds(void **state)
     scene_destroy(with);
 }
 
-static void refuse(const char *name, const char *expected)
+static void refuse_as(enum error_code code, const char *name, const char *expected)
 {
     struct error err = {0};
     struct scene *scene = builtin_make(name, &err);
     assert_null(scene);
-    assert_int_equal(err.code, ERROR_USAGE);
+    assert_int_equal(err.code, code);
     if (!strstr(err.message, expected))
         fail_msg("'%s' was refused with '%s', which does not say '%s'", name, err.message, expected);
 }
 
+static void refuse(const char *name, const char *expected) { refuse_as(ERROR_USAGE, name, expected); }
+
 static void test_refusals(void **state)
 {
     (void)state;
-    refuse("", "known are box, ball, tree, butterfly, dragon");
-    refuse("boxx", "hard-01-grazing to hard-25-sheets");
+    refuse_as(ERROR_NO_INPUT, "", "known are box, ball, tree, butterfly, dragon");
+    refuse_as(ERROR_NO_INPUT, "boxx", "hard-01-grazing to hard-25-sheets");
     refuse("dragon:", "not key=value");
     refuse("dragon:triangles", "not key=value");
     refuse("dragon:=5", "not key=value");
     refuse("dragon:triangles=5000,", "not key=value");
-    refuse("dragon:triangle=5000", "it takes: triangles");
-    refuse("box:triangles=5000", "it takes: none");
+    refuse("dragon:triangle=5000", "it takes triangles");
+    refuse("box:triangles=5000", "it takes none");
     refuse("ball:frequency=4,frequency=4", "given twice");
     refuse("dragon:triangles=999", "from 1000 to 2500000");
     refuse("dragon:triangles=2500001", "from 1000 to 2500000");

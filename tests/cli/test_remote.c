@@ -283,7 +283,7 @@ static void test_refusals(void **state)
         {"builtin:box", "--stats", "-", ERROR_USAGE, "--stats and --server"},
         {"builtin:box", "--camera", "nobody", ERROR_USAGE, "nobody"},
         {"builtin:box", "--camera", "\xff", ERROR_USAGE, "UTF-8"},
-        {"builtin:nonesuch", "--aa", "1", ERROR_USAGE, "nonesuch"},
+        {"builtin:nonesuch", "--aa", "1", ERROR_NO_INPUT, "nonesuch"},
         {"/etc/passwd", "--aa", "1", ERROR_NO_INPUT, "passwd"},
         {"builtin:box", "--server", "ftp://127.0.0.1/", ERROR_USAGE, "http://HOST:PORT/"},
         {"builtin:box", "--server", "http://127.0.0.1:1/?token=a", ERROR_USAGE, "GNOMON_TOKEN"},

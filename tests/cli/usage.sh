@@ -56,8 +56,8 @@ bad 64 'rays of arealight' compare builtin:box --algorithm none --against areali
 bad 64 'radius=R and rays=N' compare builtin:box --algorithm none --against arealight:size=3
 bad 64 "there is no camera 'nobody'" render builtin:box -o "$work/a.png" --camera nobody
 bad 64 'scenes, algorithms or devices' list cameras
-bad 64 'no_such_scene' check builtin:no_such_scene
-bad 64 'no_such_scene' render builtin:no_such_scene -o "$work/a.png"
+bad 66 'no_such_scene' check builtin:no_such_scene
+bad 66 'no_such_scene' render builtin:no_such_scene -o "$work/a.png"
 bad 64 'point, spot or directional' render builtin:box -o "$work/a.png" --light lamp
 bad 64 'token' serve --listen 0.0.0.0:0
 

@@ -37,15 +37,16 @@ assert.ok(!png.equals((await post(open, { ...request, lights: [{ kind: "point", 
 // What is refused, and the name of what is wrong.
 for (const [body, status, text] of [
   [{ scene: "builtin:box", sise: [1, 1], other: 1 }, 400, /sise, other/], [{ size: [0, 1] }, 400, /size/], [{ size: [20000, 1] }, 400, /16384/], [{ size: [1.5, 2] }, 400, /whole/],
-  [{ scene: 5 }, 400, /scene/], [{ scene: "nonesuch.gltf" }, 404, /nonesuch/], [{ scene: "/etc/passwd" }, 404, /passwd/], [{ scene: "builtin:nonesuch" }, 400, /nonesuch/],
+  [{ scene: 5 }, 400, /scene/], [{ scene: "nonesuch.gltf" }, 404, /nonesuch/], [{ scene: "/etc/passwd" }, 404, /passwd/], [{ scene: "builtin:nonesuch" }, 404, /nonesuch/],
   [{ camera: { eye: [1, 2, 3] } }, 400, /camera.target/], [{ camera: { eye: [1, 2, 3], target: [1, 2, 3] } }, 400, /eye|target/], [{ camera: "nonesuch" }, 400, /camera/],
   [{ lights: [{ kind: "lamp" }] }, 400, /kind/], [{ lights: [{ kind: "point", watts: 3 }] }, 400, /watts/], [{ format: "gif" }, 400, /format/], [{ quality: 101 }, 400, /1 to 100/],
-  [{ algorithm: "nonesuch" }, 400, /nonesuch/], [{ deadline_ms: 0 }, 400, /deadline_ms/], ["{", 400, /JSON/], ["[]", 400, /object/], ["", 400, /JSON/],
+  [{ algorithm: "nonesuch" }, 400, /nonesuch/], [{ algorithm: "sm:size=1" }, 400, /16 to 16384/], [{ deadline_ms: 0 }, 400, /deadline_ms/], ["{", 400, /JSON/], ["[]", 400, /object/], ["", 400, /JSON/],
 ]) {
   const answer = await post(open, body);
   assert.equal(answer.status, status, `${JSON.stringify(body)}: ${answer.body}`);
   assert.match(JSON.parse(answer.body.toString()).error.message, text);
 }
+assert.equal(JSON.parse((await post(open, { algorithm: "sm:size=1" })).body).error.data.field, "algorithm.size", "not the request's own size");
 assert.equal((await post(open, `"${"x".repeat(2 << 20)}"`)).status, 413);
 
 // Host and Origin, before any upgrade.

@@ -147,6 +147,8 @@ static void test_cards_agree(void **state)
     set.settings.camera.ymag = 1.5;
     set.settings.camera.far = 20;
     check_cameras(&set, 0.01, "cards, orthographic");
+    set.settings.camera.far = INFINITY;
+    check_cameras(&set, 0.01, "cards, orthographic without a far end");
     set.settings.camera.near = 4.1;
     set.settings.camera.far = 5;
     check_cameras(&set, 0.01, "cards between planes, orthographic");

@@ -86,6 +86,33 @@ static void samples_are_latin_and_spread(void **state)
     assert_int_equal(rows, UINT32_MAX);
 }
 
+static void parallel_far_is_pulled_to_the_scene(void **state)
+{
+    (void)state;
+    struct dbox bounds = {dvec3(-1, -1, -1), dvec3(1, 1, 1)}, nothing = dbox_empty();
+    struct view v = tilted(true);
+    double center = -dvec3_dot(v.eye, v.forward), ends[] = {INFINITY, 1e30, 1e9};
+    for (int i = 0; i < 3; i++) {
+        v.far = ends[i];
+        view_limit_far(&v, &bounds);
+        assert_true(v.far > center + sqrt(3) && v.far < center + 2);
+    }
+    v.far = center;
+    view_limit_far(&v, &bounds);
+    assert_true(v.far == center);
+    v.near = 100; /* all of it before the near plane */
+    v.far = INFINITY;
+    view_limit_far(&v, &bounds);
+    assert_true(v.far > v.near && v.far < 110);
+    v.far = INFINITY;
+    view_limit_far(&v, &nothing);
+    assert_true(v.far > v.near && isfinite(v.far));
+    v = tilted(false);
+    v.far = INFINITY;
+    view_limit_far(&v, &bounds);
+    assert_true(isinf(v.far));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -93,6 +120,7 @@ int main(void)
         cmocka_unit_test(edges_are_where_the_angle_says),
         cmocka_unit_test(behind_the_eye_is_refused),
         cmocka_unit_test(samples_are_latin_and_spread),
+        cmocka_unit_test(parallel_far_is_pulled_to_the_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
