@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/job_pool.h"
+#include "exact/light_grid.h"
 
 /* Chunks are fixed, so that entries come out in the same order whichever thread made them. */
 enum { CHUNKS = 16, VERTEX_CHUNK = 8192 };
@@ -90,8 +91,8 @@ static bool box_of_clipped(const struct filling *f, const struct dvec3 c[3], flo
             /* A cut end lies on the plane, whatever its rounding. */
             double depth = fmax(dvec3_dot(d, v->forward), front);
             double x = (dvec3_dot(d, v->right) / depth - v->left) * sx, y = (dvec3_dot(d, v->up) / depth - v->top) * sy;
-            box[0] = fminf(box[0], (float)x), box[1] = fmaxf(box[1], (float)x);
-            box[2] = fminf(box[2], (float)y), box[3] = fmaxf(box[3], (float)y);
+            box[0] = box_min(box[0], (float)x), box[1] = box_max(box[1], (float)x);
+            box[2] = box_min(box[2], (float)y), box[3] = box_max(box[3], (float)y);
         }
     }
     /* The cut's own rounding, at most 2^-40 of the corners' distance; seen from near, so a generous piece of the picture. */
@@ -110,7 +111,7 @@ static bool is_hidden(const struct filling *f, unsigned flags, const float *a, c
     if (!(flags & (TRIANGLE_HIDDEN_BACK | TRIANGLE_HIDDEN_MIRRORED)))
         return false;
     float ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
-    float most = fmaxf(fmaxf(fabsf(a[0]) + fabsf(a[1]), fabsf(b[0]) + fabsf(b[1])), fabsf(c[0]) + fabsf(c[1])) + 1;
+    float most = box_max(box_max(fabsf(a[0]) + fabsf(a[1]), fabsf(b[0]) + fabsf(b[1])), fabsf(c[0]) + fabsf(c[1])) + 1;
     float size = fabsf(ux) + fabsf(uy) + fabsf(vx) + fabsf(vy);
     float area = (ux * vy - uy * vx) * (float)f->sense, error = 0x1p-20f * most * size + 0x1p-36f * most * most;
     return flags & TRIANGLE_HIDDEN_BACK ? area > error : area < -error;
@@ -133,8 +134,8 @@ static struct bin_range range_of(const struct filling *f, uint32_t id)
     } else {
         if (is_hidden(f, t->flags[id], a, b, c))
             return nowhere;
-        box[0] = fminf(fminf(a[0], b[0]), c[0]), box[1] = fmaxf(fmaxf(a[0], b[0]), c[0]);
-        box[2] = fminf(fminf(a[1], b[1]), c[1]), box[3] = fmaxf(fmaxf(a[1], b[1]), c[1]);
+        box[0] = box_min(box_min(a[0], b[0]), c[0]), box[1] = box_max(box_max(a[0], b[0]), c[0]);
+        box[2] = box_min(box_min(a[1], b[1]), c[1]), box[3] = box_max(box_max(a[1], b[1]), c[1]);
     }
     if (!tile_span(box[0], box[1], f->view->width, &r.left, &r.right) ||
         !tile_span(box[2], box[3], f->view->height, &r.top, &r.bottom))

@@ -116,10 +116,12 @@ static inline void try_one_by_one(struct group *g, const struct occluder *o, con
         g->open &= ~inside;
 }
 
-static inline void group_try(struct group *g, uint32_t id)
+static __attribute__((noinline)) void group_try(struct group *g, uint32_t id)
 {
+    struct pixel_lines p = {.g = {0}};
+    if (cannot_shadow(g->receiver, g->job, id, g->center))
+        return;
     const struct occluder *o = occluder_get(g->scratch, g->job, id);
-    struct pixel_lines p;
     if (o->side == 0)
         return;
     g->scratch->counts.tests++;
@@ -141,49 +143,55 @@ static inline void group_try(struct group *g, uint32_t id)
     try_one_by_one(g, o, &p, sure.inside & g->open, g->open & ~(sure.inside | sure.outside), true);
 }
 
-/* One cell of one level. `single`: the box meets only this cell of the level. */
-static inline void group_try_cell(struct group *g, const struct light_face *face, unsigned level, uint32_t cell_x,
-                                  uint32_t cell_y, const uint32_t from[2], bool single)
+/* The boxes from `from` to `to` of the grid's arrays, which may shadow what lies in g->box. */
+static __attribute__((noinline)) void group_try_run(struct group *g, uint32_t from, uint32_t to)
 {
     const struct light_grid *grid = g->job->grid;
     const struct light_box *box = g->box;
-    uint32_t cell = face->level_first[level] + cell_y * (face->side >> level) + cell_x;
-    for (uint32_t i = grid->first[cell], end = grid->first[cell + 1]; i < end; i++) {
-        const struct light_ref *r = &grid->refs[grid->entries[i]];
-        if (r->near > box->far)
-            return;
-        if (r->u0 > box->u1 || r->u1 < box->u0 || r->v0 > box->v1 || r->v1 < box->v0 || r->id == g->receiver->id)
-            continue;
-        if (!single) {
-            /* Tried in the first cell that both boxes meet. */
-            uint32_t x = light_cell(r->u0, face->u_start, face->u_scale, face->side) >> level,
-                     y = light_cell(r->v0, face->v_start, face->v_scale, face->side) >> level;
-            if ((x > from[0] ? x : from[0]) != cell_x || (y > from[1] ? y : from[1]) != cell_y)
+    const wide u0 = wide_all(box->u0), u1 = wide_all(box->u1), v0 = wide_all(box->v0), v1 = wide_all(box->v1), far = wide_all(box->far);
+    const unsigned all = WIDTH == 32 ? ~0u : (1u << WIDTH % 32) - 1;
+    for (uint32_t i = from; i < to; i += WIDTH) {
+        unsigned apart = wide_above(wide_load(grid->u0 + i), u1) | wide_above(u0, wide_load(grid->u1 + i)) |
+                         wide_above(wide_load(grid->v0 + i), v1) | wide_above(v0, wide_load(grid->v1 + i)) |
+                         wide_above(wide_load(grid->near + i), far);
+        unsigned meet = ~apart & all;
+        if (to - i < WIDTH)
+            meet &= (1u << (to - i)) - 1;
+        for (; meet; meet &= meet - 1) {
+            uint32_t id = grid->ids[i + (unsigned)__builtin_ctz(meet)];
+            if (id == g->receiver->id)
                 continue;
+            group_try(g, id);
+            if (!g->open)
+                return;
         }
-        group_try(g, r->id);
-        if (!g->open)
-            return;
     }
+}
+
+/* x - reach, certainly not rounded up. */
+static inline float less(float x, float reach)
+{
+    float y = x - reach;
+    return y - (fabsf(x) + reach) * 0x1p-22f;
 }
 
 static inline void group_try_face(struct group *g, const struct light_face *face)
 {
     const struct light_box *box = g->box;
-    uint32_t x0 = light_cell(box->u0, face->u_start, face->u_scale, face->side),
-             x1 = light_cell(box->u1, face->u_start, face->u_scale, face->side),
-             y0 = light_cell(box->v0, face->v_start, face->v_scale, face->side),
-             y1 = light_cell(box->v1, face->v_start, face->v_scale, face->side);
+    const uint32_t *first = g->job->grid->first;
+    const uint32_t x1 = light_cell(box->u1, face->u_start, face->u_scale, face->side),
+                   y1 = light_cell(box->v1, face->v_start, face->v_scale, face->side);
     for (uint32_t levels = face->occupied; levels; levels &= levels - 1) {
         unsigned level = (unsigned)__builtin_ctz(levels);
-        const uint32_t from[2] = {x0 >> level, y0 >> level}, to[2] = {x1 >> level, y1 >> level};
-        bool single = from[0] == to[0] && from[1] == to[1];
-        for (uint32_t y = from[1]; y <= to[1]; y++)
-            for (uint32_t x = from[0]; x <= to[0]; x++) {
-                group_try_cell(g, face, level, x, y, from, single);
-                if (!g->open)
-                    return;
-            }
+        uint32_t side = face->side >> level, base = face->level_first[level], from = 0, row = 0;
+        if (side > 1) {
+            from = light_cell(less(box->u0, face->reach_u[level]), face->u_start, face->u_scale, face->side) >> level;
+            row = light_cell(less(box->v0, face->reach_v[level]), face->v_start, face->v_scale, face->side) >> level;
+        }
+        for (; row <= y1 >> level && g->open; row++) {
+            const uint32_t *cells = first + base + row * side;
+            group_try_run(g, cells[from], cells[(x1 >> level) + 1]);
+        }
     }
 }
 

@@ -187,7 +187,7 @@ struct exact_figures exact_shadows_figures(const struct exact_shadows *e)
         .undecided_fraction = tests > 0 ? (double)e->counts.undecided / (tests * (e->bins.tile_room ? 32 : 1)) : 0,
         .exact = (double)e->counts.exact,
         .grid_side = e->grid.faces[0].side,
-        .grid_entries = e->grid.first ? e->grid.first[e->grid.cell_count] : 0,
+        .grid_entries = e->grid.ref_count,
     };
 }
 

@@ -3,8 +3,9 @@
 
 #include <string.h>
 
-#define CONE_COSINE  0.5 /* half of 120 degrees */
-#define CONE_TANGENT 1.7320508075688772
+/* One face sees this far to the sides: 84 degrees. Level 0 of its grid is spread over where the triangles are. */
+#define CONE_COSINE  0.1
+#define CONE_TANGENT 9.9
 #define ROUNDING     0x1p-47 /* 64 roundings of a dot product's terms */
 #define FACE_MARGIN  (1 + 1e-6)
 
@@ -24,12 +25,12 @@ static struct on_face look(const struct light_grid *grid, const struct light_fac
     };
 }
 
-static void box_add(struct light_box *box, double u0, double u1, double v0, double v1)
+static inline void box_add(struct light_box *box, double u0, double u1, double v0, double v1)
 {
-    box->u0 = fminf(box->u0, box_below(u0));
-    box->u1 = fmaxf(box->u1, box_above(u1));
-    box->v0 = fminf(box->v0, box_below(v0));
-    box->v1 = fmaxf(box->v1, box_above(v1));
+    box->u0 = box_min(box->u0, box_below(u0));
+    box->u1 = box_max(box->u1, box_above(u1));
+    box->v0 = box_min(box->v0, box_below(v0));
+    box->v1 = box_max(box->v1, box_above(v1));
 }
 
 enum face_part light_face_box(const struct light_grid *grid, const struct light_face *face, const struct dvec3 *points, int count,
@@ -39,8 +40,8 @@ enum face_part light_face_box(const struct light_grid *grid, const struct light_
     *box = (struct light_box){INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, -INFINITY};
     for (int i = 0; i < count; i++) {
         struct on_face p = look(grid, face, points[i], slack);
-        box->near = fminf(box->near, box_below(p.z - p.error));
-        box->far = fmaxf(box->far, box_above(p.z + p.error));
+        box->near = box_min(box->near, box_below(p.z - p.error));
+        box->far = box_max(box->far, box_above(p.z + p.error));
         if (grid->directional) {
             box_add(box, p.u - p.error, p.u + p.error, p.v - p.error, p.v + p.error);
             continue;
@@ -76,18 +77,37 @@ static struct light_face face_along(struct dvec3 forward, double limit)
     return face;
 }
 
-static bool fit_in_cone(const struct triangles *t, struct dvec3 position, struct dvec3 axis)
+/* Unit directions from the light to the corners of all there is. */
+static void to_corners(const struct dbox *box, struct dvec3 position, struct dvec3 out[8])
 {
-    for (uint32_t i = 0; i < t->count; i++) {
-        if (t->flags[i] & TRIANGLE_IGNORED)
-            continue;
-        for (int k = 0; k < 3; k++) {
-            struct dvec3 q = dvec3_sub(t->vertices[t->corners[i][k]], position);
-            if (!(dvec3_dot(q, axis) > CONE_COSINE * dvec3_length(q)))
-                return false;
-        }
+    for (int i = 0; i < 8; i++) {
+        struct dvec3 corner = dvec3(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y, i & 4 ? box->max.z : box->min.z);
+        out[i] = dvec3_normalize(dvec3_sub(corner, position));
     }
-    return true;
+}
+
+/* An axis about which a narrow cone holds all: a few steps towards the corner that is farthest off, each shorter than the last (Badoiu and
+ * Clarkson, "Smaller core-sets for balls", 2003, on the sphere). False when no cone of CONE_COSINE was found. A cone of less than 180
+ * degrees that holds the corners of a box holds the box. */
+static bool find_axis(const struct dbox *box, struct dvec3 position, struct dvec3 *axis)
+{
+    struct dvec3 corners[8], sum = {0, 0, 0};
+    if (dbox_is_empty(box))
+        return false;
+    to_corners(box, position, corners);
+    for (int i = 0; i < 8; i++)
+        sum = dvec3_add(sum, corners[i]);
+    *axis = dvec3_normalize(sum);
+    for (int step = 2; step < 32; step++) {
+        int farthest = 0;
+        for (int i = 1; i < 8; i++)
+            if (dvec3_dot(corners[i], *axis) < dvec3_dot(corners[farthest], *axis))
+                farthest = i;
+        if (dvec3_dot(corners[farthest], *axis) > CONE_COSINE)
+            return true;
+        *axis = dvec3_normalize(dvec3_mad(*axis, corners[farthest], 1.0 / step));
+    }
+    return false;
 }
 
 void light_faces_choose(struct light_grid *grid, const struct triangles *t, const struct light *light)
@@ -103,12 +123,10 @@ void light_faces_choose(struct light_grid *grid, const struct triangles *t, cons
         grid->faces[0] = face_along(light->direction, tan(light->outer) * FACE_MARGIN + 1e-9);
         return;
     }
-    if (!dbox_is_empty(&t->bounds)) {
-        struct dvec3 axis = dvec3_normalize(dvec3_sub(dbox_center(&t->bounds), light->position));
-        if (dvec3_length(axis) > 0.9 && fit_in_cone(t, light->position, axis)) {
-            grid->faces[0] = face_along(axis, INFINITY);
-            return;
-        }
+    struct dvec3 axis;
+    if (find_axis(&t->bounds, light->position, &axis)) {
+        grid->faces[0] = face_along(axis, INFINITY);
+        return;
     }
     grid->face_count = 6;
     for (int i = 0; i < 6; i++) {

@@ -10,22 +10,29 @@
 enum {
     CHUNK = 4096,    /* triangles or cells a job */
     SIDE_MAX = 2048, /* cells of level 0 */
-    SPAN = 2,        /* cell widths that a triangle's box may span at its level */
     BINS = 1024,     /* of the histogram that level 0 is fitted by */
 };
 /* Part of the triangles that may lie beyond the fitted range, on each side. */
-#define TRIMMED          0.005
-/* Entries a triangle to expect: what memory is planned by before they are counted. */
-#define LEAST_BYTES_EACH (sizeof(struct light_ref) + 2 * sizeof(uint32_t))
+#define TRIMMED 0.005
+
+/* A triangle on a face, before it has its place. */
+struct light_ref {
+    float u0, u1, v0, v1, near;
+    uint32_t id;
+    uint32_t cell;
+};
+
+enum { REF_BYTES = 5 * sizeof(float) + sizeof(uint32_t) };
 
 size_t light_grid_least_bytes(const struct triangles *triangles)
 {
-    return ((size_t)triangles->count + 64) * LEAST_BYTES_EACH * (sizeof(void *) > 4 ? 1 : 1);
+    return ((size_t)triangles->count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref)) + 4096;
 }
 
 struct build {
     struct light_grid *grid;
     const struct triangles *triangles;
+    struct light_ref *refs;
     uint32_t *chunk_refs;     /* refs of each chunk of triangles; then where they start */
     _Atomic uint32_t *cursor; /* of each cell */
 };
@@ -63,7 +70,7 @@ static void make_refs(void *context, size_t index, unsigned worker)
     for (uint32_t id = first; id < end; id++)
         for (unsigned f = 0; f < b->grid->face_count; f++)
             if (counts_on_face(b, id, &b->grid->faces[f], &box))
-                b->grid->refs[at++] = (struct light_ref){box.u0, box.u1, box.v0, box.v1, box.near, id * b->grid->face_count + f};
+                b->refs[at++] = (struct light_ref){box.u0, box.u1, box.v0, box.v1, box.near, id * b->grid->face_count + f};
 }
 
 /* One face and all triangles on it: no need to count. Those that do not count get an empty box. */
@@ -74,7 +81,7 @@ static void make_refs_of_one_face(void *context, size_t index, unsigned worker)
     uint32_t first = (uint32_t)index * CHUNK, end = chunk_end(first, b->triangles->count);
     struct light_box box;
     for (uint32_t id = first; id < end; id++)
-        b->grid->refs[id] = counts_on_face(b, id, &b->grid->faces[0], &box)
+        b->refs[id] = counts_on_face(b, id, &b->grid->faces[0], &box)
                                 ? (struct light_ref){box.u0, box.u1, box.v0, box.v1, box.near, id}
                                 : (struct light_ref){INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, id};
 }
@@ -99,24 +106,25 @@ static bool all_refs(struct build *b, struct job_pool *pool)
     if (total * LIGHT_FACES_MAX >= UINT32_MAX || (uint64_t)b->triangles->count * LIGHT_FACES_MAX >= UINT32_MAX)
         return false;
     grid->ref_count = (uint32_t)total;
-    grid->refs = malloc(((size_t)total + 1) * sizeof *grid->refs);
-    if (grid->refs)
+    b->refs = malloc(((size_t)total + 1) * sizeof *b->refs);
+    if (b->refs)
         job_pool_for(pool, chunks, grid->face_count > 1 ? make_refs : make_refs_of_one_face, b);
-    return grid->refs != NULL;
+    return b->refs != NULL;
 }
 
 static unsigned face_of(const struct light_grid *grid, const struct light_ref *ref) { return ref->id % grid->face_count; }
 static bool is_empty(const struct light_ref *ref) { return !(ref->u0 <= ref->u1); }
 
 /* Range of the values' bulk: [*low, *high] without the TRIMMED part at either end, by histogram. */
-static void bulk_range(const struct light_grid *grid, unsigned face, bool vertical, float *low, float *high)
+static void bulk_range(const struct build *b, unsigned face, bool vertical, float *low, float *high)
 {
+    const struct light_grid *grid = b->grid;
     uint32_t bins[BINS] = {0}, total = 0;
     float least = INFINITY, most = -INFINITY;
     for (int pass = 0; pass < 2; pass++) {
         float scale = most > least ? BINS / (most - least) : 0;
         for (uint32_t i = 0; i < grid->ref_count; i++) {
-            const struct light_ref *r = &grid->refs[i];
+            const struct light_ref *r = &b->refs[i];
             float middle = vertical ? 0.5f * (r->v0 + r->v1) : 0.5f * (r->u0 + r->u1);
             if (is_empty(r) || !isfinite(middle) || (grid->face_count > 1 && face_of(grid, r) != face))
                 continue;
@@ -152,10 +160,6 @@ static void lay_out(struct light_grid *grid, uint32_t side)
     uint32_t cells = 0;
     for (unsigned f = 0; f < grid->face_count; f++) {
         struct light_face *face = &grid->faces[f];
-        /* start stays; scale follows the side. */
-        face->u_scale *= (float)side / (float)(face->side ? face->side : side);
-        face->v_scale *= (float)side / (float)(face->side ? face->side : side);
-        face->side = side;
         face->occupied = 0;
         for (unsigned level = 0; side >> level; level++) {
             face->level_first[level] = cells;
@@ -165,84 +169,86 @@ static void lay_out(struct light_grid *grid, uint32_t side)
     grid->cell_count = cells;
 }
 
-/* Cells of level 0 that the ref's box meets, and its level. */
-static unsigned place(const struct light_face *face, const struct light_ref *r, uint32_t cells[4])
+/* Widths of the levels' cells, less what rounding might add to a box's; the last level takes all. */
+static void set_reaches(struct light_face *face)
 {
-    cells[0] = light_cell(r->u0, face->u_start, face->u_scale, face->side);
-    cells[1] = light_cell(r->u1, face->u_start, face->u_scale, face->side);
-    cells[2] = light_cell(r->v0, face->v_start, face->v_scale, face->side);
-    cells[3] = light_cell(r->v1, face->v_start, face->v_scale, face->side);
-    uint32_t wide = cells[1] - cells[0], high = cells[3] - cells[2], most = wide > high ? wide : high;
-    unsigned level = 0;
-    while ((most >> level) > SPAN - 1 && (face->side >> level) > 1)
-        level++;
-    return level;
+    for (unsigned level = 0; face->side >> level; level++) {
+        bool last = (face->side >> level) == 1;
+        face->reach_u[level] = last ? INFINITY : (float)(1u << level) / face->u_scale;
+        face->reach_v[level] = last ? INFINITY : (float)(1u << level) / face->v_scale;
+    }
 }
 
-/* Calls for each cell of the ref: counts it or puts the ref in. */
-static void visit_cells(const struct build *b, uint32_t index, bool fill)
+static uint32_t cell_of(const struct light_face *face, const struct light_ref *r)
 {
-    struct light_grid *grid = b->grid;
-    const struct light_ref *r = &grid->refs[index];
-    if (is_empty(r))
+    unsigned level = 0;
+    float wide = (r->u1 - r->u0) * 1.0001f, high = (r->v1 - r->v0) * 1.0001f;
+    while (!(wide <= face->reach_u[level] && high <= face->reach_v[level]) && (face->side >> level) > 1)
+        level++;
+    return face->level_first[level] +
+           (light_cell(r->v0, face->v_start, face->v_scale, face->side) >> level) * (face->side >> level) +
+           (light_cell(r->u0, face->u_start, face->u_scale, face->side) >> level);
+}
+
+static void count_refs_of_cells(void *context, size_t chunk, unsigned worker)
+{
+    (void)worker;
+    const struct build *b = context;
+    const struct light_grid *grid = b->grid;
+    uint32_t first = (uint32_t)chunk * CHUNK, end = chunk_end(first, grid->ref_count);
+    for (uint32_t i = first; i < end; i++) {
+        struct light_ref *r = &b->refs[i];
+        if (is_empty(r))
+            continue;
+        r->cell = cell_of(&grid->faces[grid->face_count > 1 ? face_of(grid, r) : 0], r);
+        atomic_fetch_add_explicit(&b->cursor[r->cell], 1, memory_order_relaxed);
+    }
+}
+
+/* Indices of refs go into `ids` first: sorted by then. */
+static void place_refs(void *context, size_t chunk, unsigned worker)
+{
+    (void)worker;
+    const struct build *b = context;
+    uint32_t first = (uint32_t)chunk * CHUNK, end = chunk_end(first, b->grid->ref_count);
+    for (uint32_t i = first; i < end; i++)
+        if (!is_empty(&b->refs[i]))
+            b->grid->ids[atomic_fetch_add_explicit(&b->cursor[b->refs[i].cell], 1, memory_order_relaxed)] = i;
+}
+
+static int compare_indices(const void *first, const void *second)
+{
+    uint32_t a = *(const uint32_t *)first, b = *(const uint32_t *)second;
+    return a < b ? -1 : a > b;
+}
+
+static void sort_cell(uint32_t *at, uint32_t count)
+{
+    if (count > 24) {
+        qsort(at, count, sizeof *at, compare_indices);
         return;
-    const struct light_face *face = &grid->faces[grid->face_count > 1 ? face_of(grid, r) : 0];
-    uint32_t cells[4];
-    unsigned level = place(face, r, cells);
-    for (uint32_t y = cells[2] >> level; y <= cells[3] >> level; y++)
-        for (uint32_t x = cells[0] >> level; x <= cells[1] >> level; x++) {
-            uint32_t cell = face->level_first[level] + y * (face->side >> level) + x;
-            uint32_t at = atomic_fetch_add_explicit(&b->cursor[cell], 1, memory_order_relaxed);
-            if (fill)
-                grid->entries[at] = index;
+    }
+    for (uint32_t i = 1; i < count; i++)
+        for (uint32_t k = i; k > 0 && at[k] < at[k - 1]; k--) {
+            uint32_t swap = at[k];
+            at[k] = at[k - 1];
+            at[k - 1] = swap;
         }
 }
 
-static void count_entries(void *context, size_t chunk, unsigned worker)
-{
-    (void)worker;
-    const struct build *b = context;
-    uint32_t first = (uint32_t)chunk * CHUNK, end = chunk_end(first, b->grid->ref_count);
-    for (uint32_t i = first; i < end; i++)
-        visit_cells(b, i, false);
-}
-
-static void fill_entries(void *context, size_t chunk, unsigned worker)
-{
-    (void)worker;
-    const struct build *b = context;
-    uint32_t first = (uint32_t)chunk * CHUNK, end = chunk_end(first, b->grid->ref_count);
-    for (uint32_t i = first; i < end; i++)
-        visit_cells(b, i, true);
-}
-
-static int compare_refs(const void *first, const void *second, void *refs)
-{
-    const struct light_ref *a = (const struct light_ref *)refs + *(const uint32_t *)first,
-                           *b = (const struct light_ref *)refs + *(const uint32_t *)second;
-    if (a->near != b->near)
-        return a->near < b->near ? -1 : 1;
-    return a->id < b->id ? -1 : a->id > b->id;
-}
-
-static void sort_some(void *context, size_t chunk, unsigned worker)
+static void write_cells(void *context, size_t chunk, unsigned worker)
 {
     (void)worker;
     const struct build *b = context;
     struct light_grid *grid = b->grid;
     uint32_t begin = (uint32_t)chunk * CHUNK, end = chunk_end(begin, grid->cell_count);
     for (uint32_t cell = begin; cell < end; cell++) {
-        uint32_t *at = grid->entries + grid->first[cell], count = grid->first[cell + 1] - grid->first[cell];
-        if (count > 24) {
-            qsort_r(at, count, sizeof *at, compare_refs, grid->refs);
-            continue;
+        sort_cell(grid->ids + grid->first[cell], grid->first[cell + 1] - grid->first[cell]);
+        for (uint32_t i = grid->first[cell]; i < grid->first[cell + 1]; i++) {
+            const struct light_ref *r = &b->refs[grid->ids[i]];
+            grid->u0[i] = r->u0, grid->u1[i] = r->u1, grid->v0[i] = r->v0, grid->v1[i] = r->v1, grid->near[i] = r->near;
+            grid->ids[i] = grid->face_count > 1 ? r->id / grid->face_count : r->id;
         }
-        for (uint32_t i = 1; i < count; i++)
-            for (uint32_t k = i; k > 0 && compare_refs(&at[k], &at[k - 1], grid->refs) < 0; k--) {
-                uint32_t swap = at[k];
-                at[k] = at[k - 1];
-                at[k - 1] = swap;
-            }
     }
 }
 
@@ -259,21 +265,19 @@ static void mark_occupied(struct light_grid *grid)
 
 static uint32_t chunks_of(uint32_t count) { return (uint32_t)(((uint64_t)count + CHUNK - 1) / CHUNK); }
 
-/* Counts with the present side; the number of entries. */
-static uint64_t count_all(struct build *b, struct job_pool *pool)
+static void count_cells(struct build *b, struct job_pool *pool)
 {
     struct light_grid *grid = b->grid;
     memset((void *)b->cursor, 0, grid->cell_count * sizeof *b->cursor);
-    job_pool_for(pool, chunks_of(grid->ref_count), count_entries, b);
-    uint64_t total = 0;
+    job_pool_for(pool, chunks_of(grid->ref_count), count_refs_of_cells, b);
+    uint32_t total = 0;
     for (uint32_t i = 0; i < grid->cell_count; i++) {
         uint32_t count = atomic_load_explicit(&b->cursor[i], memory_order_relaxed);
-        grid->first[i] = (uint32_t)total;
-        atomic_store_explicit(&b->cursor[i], (uint32_t)total, memory_order_relaxed);
+        grid->first[i] = total;
+        atomic_store_explicit(&b->cursor[i], total, memory_order_relaxed);
         total += count;
     }
-    grid->first[grid->cell_count] = (uint32_t)total;
-    return total;
+    grid->first[grid->cell_count] = total;
 }
 
 static uint32_t wanted_side(const struct light_grid *grid)
@@ -285,52 +289,57 @@ static uint32_t wanted_side(const struct light_grid *grid)
     return side;
 }
 
-static size_t bytes_for(const struct light_grid *grid, uint64_t entries)
+/* While it is built; afterwards the refs and a word a cell are free again. */
+static size_t bytes_for(const struct light_grid *grid, uint32_t side)
 {
-    return grid->ref_count * sizeof *grid->refs + (size_t)entries * sizeof *grid->entries +
-           ((size_t)grid->cell_count + 1) * (sizeof *grid->first + sizeof(uint32_t));
+    size_t cells = (size_t)side * side * 4 / 3 * grid->face_count;
+    return ((size_t)grid->ref_count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref)) + cells * 2 * sizeof(uint32_t);
+}
+
+static void fit_faces(struct build *b, uint32_t side)
+{
+    for (unsigned f = 0; f < b->grid->face_count; f++) {
+        struct light_face *face = &b->grid->faces[f];
+        float low, high;
+        bulk_range(b, f, false, &low, &high);
+        spread(low, high, side, &face->u_start, &face->u_scale);
+        bulk_range(b, f, true, &low, &high);
+        spread(low, high, side, &face->v_start, &face->v_scale);
+        face->side = side;
+        set_reaches(face);
+    }
+    lay_out(b->grid, side);
+}
+
+static float *floats(const struct light_grid *grid) { return calloc((size_t)grid->ref_count + LIGHT_PADDING, sizeof(float)); }
+
+static bool allocate(struct build *b)
+{
+    struct light_grid *grid = b->grid;
+    grid->u0 = floats(grid), grid->u1 = floats(grid), grid->v0 = floats(grid), grid->v1 = floats(grid), grid->near = floats(grid);
+    grid->ids = calloc((size_t)grid->ref_count + LIGHT_PADDING, sizeof *grid->ids);
+    grid->first = malloc(((size_t)grid->cell_count + 1) * sizeof *grid->first);
+    b->cursor = malloc(((size_t)grid->cell_count + 1) * sizeof *b->cursor);
+    return grid->u0 && grid->u1 && grid->v0 && grid->v1 && grid->near && grid->ids && grid->first && b->cursor;
 }
 
 static bool list_all(struct build *b, size_t memory, struct job_pool *pool)
 {
     struct light_grid *grid = b->grid;
     uint32_t side = wanted_side(grid);
-    for (unsigned f = 0; f < grid->face_count; f++) {
-        struct light_face *face = &grid->faces[f];
-        float low, high;
-        face->side = side;
-        bulk_range(grid, f, false, &low, &high);
-        spread(low, high, side, &face->u_start, &face->u_scale);
-        bulk_range(grid, f, true, &low, &high);
-        spread(low, high, side, &face->v_start, &face->v_scale);
-    }
-    lay_out(grid, side);
-    grid->first = malloc(((size_t)grid->cell_count + 1) * sizeof *grid->first);
-    b->cursor = malloc(((size_t)grid->cell_count + 1) * sizeof *b->cursor);
-    if (!grid->first || !b->cursor)
+    while (memory && bytes_for(grid, side) > memory && side > 1)
+        side /= 2;
+    if (memory && bytes_for(grid, side) > memory)
         return false;
-    uint64_t entries = count_all(b, pool);
-    while ((entries >= UINT32_MAX || (memory && bytes_for(grid, entries) > memory)) && side > 1) {
-        lay_out(grid, side /= 2);
-        entries = count_all(b, pool);
-    }
-    if (entries >= UINT32_MAX || (memory && bytes_for(grid, entries) > memory))
+    fit_faces(b, side);
+    if (!allocate(b))
         return false;
-    grid->bytes = bytes_for(grid, entries);
-    grid->entries = malloc(((size_t)entries + 1) * sizeof *grid->entries);
-    if (!grid->entries)
-        return false;
-    job_pool_for(pool, chunks_of(grid->ref_count), fill_entries, b);
-    job_pool_for(pool, chunks_of(grid->cell_count), sort_some, b);
+    grid->bytes = ((size_t)grid->ref_count + LIGHT_PADDING) * REF_BYTES + grid->cell_count * sizeof *grid->first;
+    count_cells(b, pool);
+    job_pool_for(pool, chunks_of(grid->ref_count), place_refs, b);
+    job_pool_for(pool, chunks_of(grid->cell_count), write_cells, b);
     mark_occupied(grid);
     return true;
-}
-
-/* From id * faces + face back to the id. */
-static void strip_faces(struct light_grid *grid)
-{
-    for (uint32_t i = 0; grid->face_count > 1 && i < grid->ref_count; i++)
-        grid->refs[i].id /= grid->face_count;
 }
 
 bool light_grid_init(struct light_grid *grid, const struct triangles *triangles, const struct light *light, size_t memory,
@@ -340,16 +349,20 @@ bool light_grid_init(struct light_grid *grid, const struct triangles *triangles,
     struct build b = {.grid = grid, .triangles = triangles};
     light_faces_choose(grid, triangles, light);
     bool ok = all_refs(&b, pool) && list_all(&b, memory, pool);
-    strip_faces(grid);
     free((void *)b.cursor);
     free(b.chunk_refs);
+    free(b.refs);
     return ok;
 }
 
 void light_grid_finish(struct light_grid *grid)
 {
-    free(grid->refs);
+    free(grid->u0);
+    free(grid->u1);
+    free(grid->v0);
+    free(grid->v1);
+    free(grid->near);
+    free(grid->ids);
     free(grid->first);
-    free(grid->entries);
     memset(grid, 0, sizeof *grid);
 }

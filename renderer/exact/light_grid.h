@@ -1,12 +1,13 @@
 /* Which triangles may lie between a point and the light: a grid seen from the light. A directional light has one face, orthographic; a
- * point or spot light one perspective face where all fits into a cone of 120 degrees, else the six of a cube.
+ * point or spot light one perspective face where all it has to do with lies well before a plane through it, else the six of a cube.
  *
  * A face is a pyramid of grids: level 0 has side x side cells, each further level half as many a side, the last one. A triangle is
- * listed at the finest level at which its box spans at most two cell widths: no triangle has more than nine entries, whatever its size
- * (EXACT.md's "insert at the level where it spans 2 x 2"). Border cells reach to infinity, so that level 0 may be spread over where most
- * triangles are. Within a cell: nearest to the light first, then by id, whichever thread came first.
+ * kept once: at the finest level whose cells are as wide as its box, in the cell of the box's least corner. So a box is met by
+ * triangles of its own cells and of one more row and column before them, and those of a row of cells lie one after the other in
+ * memory. Memory does not depend on how large triangles are. Border cells reach to infinity, so that level 0 may be spread over where
+ * most triangles are. Within a cell: by id, whichever thread came first.
  *
- * All boxes are rounded outwards, and cells are found from boxes by one monotone function: two boxes that overlap share a cell. */
+ * All boxes are rounded outwards, and cells are found from boxes by one monotone function. */
 #pragma once
 
 #include <math.h>
@@ -16,7 +17,7 @@
 
 struct job_pool;
 
-enum { LIGHT_FACES_MAX = 6, LIGHT_LEVELS_MAX = 13 };
+enum { LIGHT_FACES_MAX = 6, LIGHT_LEVELS_MAX = 13, LIGHT_PADDING = 16 };
 
 /* u, v: on the plane at distance 1 from a point or spot light; scene units for a directional one. near, far: along face.forward. */
 struct light_box {
@@ -30,12 +31,7 @@ struct light_face {
     uint32_t side;                            /* cells of level 0 in each direction; a power of two */
     uint32_t occupied;                        /* bit a level: it has entries */
     uint32_t level_first[LIGHT_LEVELS_MAX];   /* first cell of each level */
-};
-
-/* A triangle on a face. */
-struct light_ref {
-    float u0, u1, v0, v1, near;
-    uint32_t id;
+    float reach_u[LIGHT_LEVELS_MAX], reach_v[LIGHT_LEVELS_MAX]; /* no box of the level is wider, higher */
 };
 
 struct light_grid {
@@ -43,11 +39,11 @@ struct light_grid {
     struct dvec3 position; /* not directional */
     unsigned face_count;
     struct light_face faces[LIGHT_FACES_MAX];
-    struct light_ref *refs;
+    float *u0, *u1, *v0, *v1, *near; /* boxes of triangles on faces, cell by cell; LIGHT_PADDING more may be read */
+    uint32_t *ids;
     uint32_t ref_count;
-    uint32_t *first; /* entries of each cell, one more than cells */
+    uint32_t *first; /* boxes of each cell, one more than cells */
     uint32_t cell_count;
-    uint32_t *entries; /* indices of refs */
     size_t bytes;
 };
 
@@ -69,6 +65,10 @@ size_t light_grid_least_bytes(const struct triangles *triangles);
 /* A float certainly not above, or not below x. */
 static inline float box_below(double x) { return (float)x - (fabsf((float)x) * 0x1p-23f + 1e-37f); }
 static inline float box_above(double x) { return (float)x + (fabsf((float)x) * 0x1p-23f + 1e-37f); }
+
+/* Of two numbers; unlike fminf() without a call. */
+static inline float box_min(float a, float b) { return a < b ? a : b; }
+static inline float box_max(float a, float b) { return a > b ? a : b; }
 
 static inline uint32_t light_cell(float u, float start, float scale, uint32_t side)
 {

@@ -9,7 +9,7 @@ static inline struct exact_apex eye_of(const struct view *view)
     return (struct exact_apex){view->orthographic, view->orthographic ? view->forward : view->eye};
 }
 
-static inline const struct occluder *occluder_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
+static __attribute__((noinline)) const struct occluder *occluder_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct occluder *o = &s->occluders[id % OCCLUDERS_KEPT];
     if (o->id == id)
@@ -32,7 +32,7 @@ static inline const struct occluder *occluder_get(struct tile_scratch *s, const 
     return o;
 }
 
-static inline void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)
+static __attribute__((noinline)) void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct dvec3 c[3];
     struct forms forms;
@@ -52,10 +52,38 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
     r->certain = fabs(r->fixed) > LINE_ROUNDING * r->fixed_size + LINE_UNDERFLOW;
     /* N . d where the camera sees it: against F in perspective, F itself else. */
     int slope = (lines.fixed[3] > 0) == job->view->orthographic ? 1 : -1;
-    r->faces = slope * slow_light_side(&s->slow, id) < 0;
+    int side = slow_light_side(&s->slow, id);
+    r->faces = slope * side < 0;
+    forms_make(&r->to_light, &job->to_light, &c[0], &c[1], &c[2]);
+    r->to_light.x *= side;
+    r->to_light.y *= side;
+    r->to_light.z *= side;
     r->faces_met = 0;
     for (unsigned f = 0; f < job->grid->face_count; f++)
         r->faces_met |= (unsigned)(light_face_box(job->grid, &job->grid->faces[f], c, 3, 0, &r->boxes[f]) == FACE_SOME) << f;
+}
+
+/* True when `id` certainly shadows nothing of the receiver, which faces the light: all its corners lie beyond one of the planes through
+ * the light and an edge of the receiver, or below the receiver's own plane. A corner that they share lies on that plane, exactly, and
+ * the rest beyond: then the open line from a point of the receiver to the light does not meet the closed triangle, whatever the tie
+ * rule. That settles a dense mesh's neighbours. `anywhere`: the points may lie outside the receiver's edges, on its plane. */
+static inline __attribute__((always_inline)) bool cannot_shadow(const struct receiver *r, const struct tile_job *job, uint32_t id,
+                                                                bool anywhere)
+{
+    /* Edges ab, bc, ca and the plane that each set of corners lies on. */
+    static const uint8_t on[8] = {0, 1 | 4 | 8, 1 | 2 | 8, 0, 2 | 4 | 8, 0, 0, 0};
+    const struct forms *f = &r->to_light;
+    const lane4 zero = {0, 0, 0, 0};
+    unsigned beyond = anywhere ? 8 : 15;
+    for (int k = 0; k < 3 && beyond; k++) {
+        const struct dvec3 *v = &job->triangles->vertices[job->triangles->corners[id][k]];
+        lane4 x = v->x - f->ax, y = v->y - f->ay, z = v->z - f->az;
+        lane4 reach = lane_abs(x) + lane_abs(y) + lane_abs(z), value = f->x * x + f->y * y + f->z * z;
+        lane4 under = -LINE_ROUNDING * f->size * reach - LINE_UNDERFLOW;
+        unsigned apart = lanes_above(&reach, &zero) & 7;
+        beyond &= lanes_above(&under, &value) | on[~apart & 7];
+    }
+    return beyond != 0;
 }
 
 static inline const struct receiver *receiver_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
@@ -68,9 +96,21 @@ static inline const struct receiver *receiver_get(struct tile_scratch *s, const 
 
 /* Points of a receiver's plane at four picture positions, and how far off they may be. */
 struct quad {
-    struct dvec3 points[4];
+    lane4 x, y, z;
     double slack;
 };
+
+static inline __attribute__((always_inline)) double lane_least(lane4 a)
+{
+    double x = a[0] < a[1] ? a[0] : a[1], y = a[2] < a[3] ? a[2] : a[3];
+    return x < y ? x : y;
+}
+
+static inline __attribute__((always_inline)) double lane_most(lane4 a)
+{
+    double x = a[0] > a[1] ? a[0] : a[1], y = a[2] > a[3] ? a[2] : a[3];
+    return x > y ? x : y;
+}
 
 /* False where the plane's horizon is near: the points would mean nothing. */
 static inline bool quad_make(struct quad *q, const struct tile_job *job, const struct receiver *r, double x, double y,
@@ -93,13 +133,9 @@ static inline bool quad_make(struct quad *q, const struct tile_job *job, const s
     /* t is off by V's and F's relative errors (perspective) or by V's error over F; o and d by a rounding or two. */
     lane4 off = flat ? lane_all(LINE_ROUNDING * (r->v_size + fabs(r->fixed_size)) / fabs(r->fixed)) * (1 + lane_abs(t))
                      : t * (LINE_ROUNDING * (r->v_size / v + r->fixed_size / fabs(r->fixed)) + LINE_ROUNDING);
-    double most = 0;
-    for (int i = 0; i < 4; i++) {
-        q->points[i] = dvec3(ax[i], ay[i], az[i]);
-        most = fmax(most, off[i]);
-    }
+    q->x = ax, q->y = ay, q->z = az;
     q->slack =
-        2 * most * (flat ? 1 : s->size) + LINE_ROUNDING * (fabs(s->fixed.x) + fabs(s->fixed.y) + fabs(s->fixed.z) + s->size);
+        2 * lane_most(off) * (flat ? 1 : s->size) + LINE_ROUNDING * (fabs(s->fixed.x) + fabs(s->fixed.y) + fabs(s->fixed.z) + s->size);
     return true;
 }
 
@@ -109,10 +145,10 @@ static inline int quad_within_reach(const struct light *light, const struct quad
 {
     if (light->kind == LIGHT_DIRECTIONAL || (light->kind == LIGHT_POINT && !(light->range > 0)))
         return 1;
-    struct dvec3 middle = dvec3_scale(dvec3_add(q->points[0], q->points[3]), 0.5), v = dvec3_sub(middle, light->position);
-    double distance = dvec3_length(v), radius = 0;
-    for (int i = 0; i < 4; i++)
-        radius = fmax(radius, dvec3_length(dvec3_sub(q->points[i], middle)));
+    struct dvec3 middle = dvec3(0.5 * (q->x[0] + q->x[3]), 0.5 * (q->y[0] + q->y[3]), 0.5 * (q->z[0] + q->z[3]));
+    struct dvec3 v = dvec3_sub(middle, light->position);
+    lane4 dx = q->x - middle.x, dy = q->y - middle.y, dz = q->z - middle.z;
+    double distance = dvec3_length(v), radius = sqrt(lane_most(dx * dx + dy * dy + dz * dz));
     radius = 2 * radius + 4 * q->slack + 0x1p-40 * (distance + dvec3_length(middle) + dvec3_length(light->position));
     int answer = 1;
     if (light->range > 0) {
@@ -129,6 +165,39 @@ static inline int quad_within_reach(const struct light *light, const struct quad
     return answer;
 }
 
+/* light_face_box() of a quad on a face without limits, all of it before the light; false: not so, ask light_face_box(). */
+static inline bool quad_box(const struct light_grid *grid, const struct light_face *face, const struct quad *q, struct light_box *box)
+{
+    const struct dvec3 none = {0, 0, 0}, *from = grid->directional ? &none : &grid->position;
+    const struct dvec3 *r = &face->right, *up = &face->up, *f = &face->forward;
+    lane4 x = q->x - from->x, y = q->y - from->y, z = q->z - from->z;
+    lane4 u = x * r->x + y * r->y + z * r->z, v = x * up->x + y * up->y + z * up->z, depth = x * f->x + y * f->y + z * f->z;
+    double error = 2 * q->slack + 0x1p-47 * lane_most(lane_abs(x) + lane_abs(y) + lane_abs(z));
+    double nearest = lane_least(depth), du = error, dv = error;
+    if (!grid->directional) {
+        if (!(nearest > 4 * error) || face->limit < INFINITY)
+            return false;
+        u /= depth, v /= depth;
+        double k = 2 * error / nearest;
+        du = k * (1 + lane_most(lane_abs(u)));
+        dv = k * (1 + lane_most(lane_abs(v)));
+    }
+    *box = (struct light_box){box_below(lane_least(u) - du), box_above(lane_most(u) + du), box_below(lane_least(v) - dv),
+                              box_above(lane_most(v) + dv), box_below(nearest - error), box_above(lane_most(depth) + error)};
+    return true;
+}
+
+static inline enum face_part quad_face_box(const struct light_grid *grid, const struct light_face *face, const struct quad *q,
+                                           struct light_box *box)
+{
+    if (quad_box(grid, face, q, box))
+        return FACE_SOME;
+    struct dvec3 points[4];
+    for (int i = 0; i < 4; i++)
+        points[i] = dvec3(q->x[i], q->y[i], q->z[i]);
+    return light_face_box(grid, face, points, 4, q->slack, box);
+}
+
 /* What of a face a pixel's part of a receiver may meet; false: nothing. quad: NULL: not known. own: the receiver's box there; NULL: the
  * points need not lie on the triangle. */
 static inline bool query_box(const struct tile_job *job, const struct light_box *own, unsigned f, const struct quad *q,
@@ -138,12 +207,12 @@ static inline bool query_box(const struct tile_job *job, const struct light_box 
         *box = own ? *own : (struct light_box){-INFINITY, INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY};
         return true;
     }
-    if (light_face_box(job->grid, &job->grid->faces[f], q->points, 4, q->slack, box) == FACE_NONE)
+    if (quad_face_box(job->grid, &job->grid->faces[f], q, box) == FACE_NONE)
         return false;
     if (!own)
         return true;
-    box->u0 = fmaxf(box->u0, own->u0), box->u1 = fminf(box->u1, own->u1);
-    box->v0 = fmaxf(box->v0, own->v0), box->v1 = fminf(box->v1, own->v1);
-    box->near = fmaxf(box->near, own->near), box->far = fminf(box->far, own->far);
+    box->u0 = box_max(box->u0, own->u0), box->u1 = box_min(box->u1, own->u1);
+    box->v0 = box_max(box->v0, own->v0), box->v1 = box_min(box->v1, own->v1);
+    box->near = box_max(box->near, own->near), box->far = box_min(box->far, own->far);
     return box->u0 <= box->u1 && box->v0 <= box->v1;
 }

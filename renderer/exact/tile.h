@@ -37,7 +37,8 @@ struct receiver {
     bool certain; /* the sign of F is known */
     bool faces;   /* if certain: it faces the light where the camera sees it */
     double fixed, v, vx, vy, fixed_size, v_size;
-    unsigned faces_met; /* bit a face of the grid */
+    struct forms to_light; /* seen from the light: positive inside its edges, and on the light's side of its plane */
+    unsigned faces_met;    /* bit a face of the grid */
     struct light_box boxes[LIGHT_FACES_MAX];
 };
 

@@ -4,7 +4,7 @@
 #include "exact/visible.h"
 
 /* The samples in `mask` of one pixel, which all see receiver `id`: those that receive, and those of them that are lit. */
-static inline uint32_t shade_group(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t mask, uint32_t x,
+static __attribute__((noinline)) uint32_t shade_group(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t mask, uint32_t x,
                                    uint32_t y, uint32_t *lit)
 {
     const struct receiver *r = receiver_get(s, job, id);

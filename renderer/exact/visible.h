@@ -8,7 +8,8 @@
 struct shown {
     uint32_t id;
     bool certain;           /* its lines and keys mean something */
-    bool plain;             /* no mask, and wholly between near and far */
+    bool holes;
+    bool between;           /* wholly between near and far */
     lane4 v, vx, vy, error; /* edges, positive inside; lane 3 always */
     double key, key_x, key_y, key_error;
 };
@@ -39,7 +40,8 @@ static inline bool shown_make(struct shown *t, const struct tile_job *job, uint3
     bool flat = job->view->orthographic;
     *t = (struct shown){.id = id};
     t->certain = fabs(fixed) > 4 * fixed_error;
-    t->plain = !(flags & TRIANGLE_HOLES) && between_planes(job->view, c);
+    t->holes = flags & TRIANGLE_HOLES;
+    t->between = between_planes(job->view, c);
     if (!t->certain)
         return true;
     int slope = (fixed > 0) == flat ? 1 : -1;
@@ -77,10 +79,17 @@ static inline void show_slowly(struct tile_scratch *s, const struct tile_job *jo
     }
 }
 
-static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
+/* True when all keys from `low` to `high` are certainly those of points between near and far. */
+static inline bool keys_between(const struct view *v, double low, double high)
+{
+    double nearest = v->orthographic ? -v->near : 1 / v->near, farthest = v->orthographic ? -v->far : 1 / v->far;
+    return low > farthest + 1e-12 * fabs(farthest) && high < nearest - 1e-12 * fabs(nearest);
+}
+
+static __attribute__((noinline)) void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
                                  uint32_t x, uint32_t y)
 {
-    float keys[32];
+    float keys[32] = {0};
     if (!t->certain) {
         show_slowly(s, job, t, pixel, x, y, ~0u, 0, keys, INFINITY);
         return;
@@ -95,6 +104,11 @@ static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *
         return;
     double key = t->key + x * t->key_x + y * t->key_y;
     float own = (float)(t->key_error + (fabs(key) + fabs(t->key_x) + fabs(t->key_y)) * SINGLE_ROUNDING + SINGLE_UNDERFLOW);
+    bool plain = !t->holes;
+    if (plain && !t->between) {
+        double rise = (t->key_x > 0 ? t->key_x : 0) + (t->key_y > 0 ? t->key_y : 0);
+        plain = keys_between(job->view, key + rise - fabs(t->key_x) - fabs(t->key_y) - (double)own, key + rise + (double)own);
+    }
     float error = own > s->key_error[pixel] ? own : s->key_error[pixel];
     uint32_t nearer = 0, farther = 0;
     wide k0 = wide_all((float)key), kx = wide_all((float)t->key_x), ky = wide_all((float)t->key_y), room = wide_all(own + error);
@@ -104,14 +118,14 @@ static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *
         unsigned above = wide_above(over, room);
         nearer |= above << i;
         farther |= wide_above(wide_sub(wide_all(0), room), over) << i;
-        unsigned take = t->plain ? above & sure.inside >> i : 0;
+        unsigned take = plain ? above & sure.inside >> i : 0;
         wide_put(keys + i, value, ~0u);
         wide_put(s->key[pixel] + i, value, take & ((1ull << WIDTH) - 1));
         wide_put_id(s->id[pixel] + i, t->id, take & ((1ull << WIDTH) - 1));
     }
-    if (t->plain && (nearer & sure.inside))
+    if (plain && (nearer & sure.inside))
         s->key_error[pixel] = error;
-    uint32_t slowly = (unsure & ~farther) | (sure.inside & ~farther & (t->plain ? ~nearer : ~0u));
+    uint32_t slowly = (unsure & ~farther) | (sure.inside & ~farther & (plain ? ~nearer : ~0u));
     if (slowly)
         show_slowly(s, job, t, pixel, x, y, slowly, sure.inside, keys, error);
 }
@@ -134,8 +148,8 @@ static inline void show(struct tile_scratch *s, const struct tile_job *job, uint
     uint32_t left = 0, right = width, top = 0, bottom = height;
     struct shown shown;
     if (!isnan(a[0] + b[0] + c[0])) {
-        pixel_span(fminf(fminf(a[0], b[0]), c[0]), fmaxf(fmaxf(a[0], b[0]), c[0]), x0, width, &left, &right);
-        pixel_span(fminf(fminf(a[1], b[1]), c[1]), fmaxf(fmaxf(a[1], b[1]), c[1]), y0, height, &top, &bottom);
+        pixel_span(box_min(box_min(a[0], b[0]), c[0]), box_max(box_max(a[0], b[0]), c[0]), x0, width, &left, &right);
+        pixel_span(box_min(box_min(a[1], b[1]), c[1]), box_max(box_max(a[1], b[1]), c[1]), y0, height, &top, &bottom);
     }
     if (left >= right || top >= bottom || !shown_make(&shown, job, id))
         return;
