@@ -1,6 +1,8 @@
 /* A tile's code: which samples of a receiver in one pixel are shadowed. */
 #pragma once
 
+#include <stdatomic.h>
+
 #include "exact/receivers.h"
 
 /* G of four lines within a pixel: G(x, y) = g + x gx + y gy for x, y in [0, 1]; off by at most `error`. */
@@ -83,6 +85,7 @@ struct group {
     uint32_t open; /* samples not yet shadowed */
     bool center;   /* one sample, the pixel's centre (bit 0), else view_samples32 */
     bool certain;  /* the receiver's lines say where its points are */
+    struct receiver *collect; /* put candidates there instead of trying them */
 };
 
 static inline struct sample_ray group_ray(const struct group *g, unsigned sample)
@@ -116,10 +119,24 @@ static inline void try_one_by_one(struct group *g, const struct occluder *o, con
         g->open &= ~inside;
 }
 
-static __attribute__((noinline)) void group_try(struct group *g, uint32_t id)
+static inline void group_collect(struct group *g, uint32_t id)
+{
+    struct receiver *r = g->collect;
+    if (cannot_shadow(r, g->job, id, false) || is_on_lit_side(r, g->job, id))
+        return;
+    if (r->candidate_count == CANDIDATES_MAX) {
+        r->candidate_count = CANDIDATES_MANY;
+        g->open = 0;
+        return;
+    }
+    r->candidates[r->candidate_count++] = id;
+}
+
+/* `certain_to_try`: cannot_shadow() has been asked. */
+static inline void group_try(struct group *g, uint32_t id, bool certain_to_try)
 {
     struct pixel_lines p = {.g = {0}};
-    if (cannot_shadow(g->receiver, g->job, id, g->center))
+    if (!certain_to_try && cannot_shadow(g->receiver, g->job, id, g->center))
         return;
     const struct occluder *o = occluder_get(g->scratch, g->job, id);
     if (o->side == 0)
@@ -144,7 +161,7 @@ static __attribute__((noinline)) void group_try(struct group *g, uint32_t id)
 }
 
 /* The boxes from `from` to `to` of the grid's arrays, which may shadow what lies in g->box. */
-static __attribute__((noinline)) void group_try_run(struct group *g, uint32_t from, uint32_t to)
+static inline void group_try_run(struct group *g, uint32_t from, uint32_t to)
 {
     const struct light_grid *grid = g->job->grid;
     const struct light_box *box = g->box;
@@ -161,7 +178,10 @@ static __attribute__((noinline)) void group_try_run(struct group *g, uint32_t fr
             uint32_t id = grid->ids[i + (unsigned)__builtin_ctz(meet)];
             if (id == g->receiver->id)
                 continue;
-            group_try(g, id);
+            if (g->collect)
+                group_collect(g, id);
+            else
+                group_try(g, id, false);
             if (!g->open)
                 return;
         }
@@ -175,13 +195,32 @@ static inline float less(float x, float reach)
     return y - (fabsf(x) + reach) * 0x1p-22f;
 }
 
-static inline void group_try_face(struct group *g, const struct light_face *face)
+/* Levels with boxes near g->box. */
+static inline uint32_t levels_near(const struct group *g, unsigned f, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1)
 {
+    const struct light_grid *grid = g->job->grid;
+    const struct light_face *face = &grid->faces[f];
+    uint32_t side = light_blocks(face), levels = face->everywhere;
+    const _Atomic uint16_t *blocks = grid->blocks + (size_t)f * side * side;
+    x0 >>= LIGHT_BLOCK_SHIFT, x1 >>= LIGHT_BLOCK_SHIFT, y0 >>= LIGHT_BLOCK_SHIFT, y1 >>= LIGHT_BLOCK_SHIFT;
+    if ((x1 - x0 + 1) * (uint64_t)(y1 - y0 + 1) > 64)
+        return face->occupied;
+    for (uint32_t y = y0; y <= y1; y++)
+        for (uint32_t x = x0; x <= x1; x++)
+            levels |= atomic_load_explicit(&blocks[y * side + x], memory_order_relaxed);
+    return levels;
+}
+
+static inline void group_try_face(struct group *g, unsigned f)
+{
+    const struct light_face *face = &g->job->grid->faces[f];
     const struct light_box *box = g->box;
     const uint32_t *first = g->job->grid->first;
-    const uint32_t x1 = light_cell(box->u1, face->u_start, face->u_scale, face->side),
+    const uint32_t x0 = light_cell(box->u0, face->u_start, face->u_scale, face->side),
+                   y0 = light_cell(box->v0, face->v_start, face->v_scale, face->side),
+                   x1 = light_cell(box->u1, face->u_start, face->u_scale, face->side),
                    y1 = light_cell(box->v1, face->v_start, face->v_scale, face->side);
-    for (uint32_t levels = face->occupied; levels; levels &= levels - 1) {
+    for (uint32_t levels = levels_near(g, f, x0, x1, y0, y1); levels; levels &= levels - 1) {
         unsigned level = (unsigned)__builtin_ctz(levels);
         uint32_t side = face->side >> level, base = face->level_first[level], from = 0, row = 0;
         if (side > 1) {
@@ -193,6 +232,65 @@ static inline void group_try_face(struct group *g, const struct light_face *face
             group_try_run(g, cells[from], cells[(x1 >> level) + 1]);
         }
     }
+}
+
+/* Whether a receiver is small enough for what may shadow it to be found once, for all its pixels. */
+static inline bool is_small(const struct light_face *face, const struct light_box *box)
+{
+    return (box->u1 - box->u0) * face->u_scale < 4 && (box->v1 - box->v0) * face->v_scale < 4;
+}
+
+/* Finds what may shadow the receiver within `quad` (NULL: anywhere). */
+static inline void find_candidates(const struct group *g, struct receiver *r, uint32_t area, const struct quad *quad)
+{
+    struct group all = *g;
+    all.collect = r;
+    all.open = 1;
+    r->candidate_area = area;
+    r->candidate_count = 0;
+    for (unsigned faces = r->faces_met; faces && all.open; faces &= faces - 1) {
+        unsigned f = (unsigned)__builtin_ctz(faces);
+        struct light_box box;
+        if (!query_box(g->job, &r->boxes[f], f, quad, &box))
+            continue;
+        all.box = &box;
+        group_try_face(&all, f);
+    }
+}
+
+static inline bool is_small_everywhere(const struct tile_job *job, const struct receiver *r)
+{
+    for (unsigned faces = r->faces_met; faces; faces &= faces - 1)
+        if (!is_small(&job->grid->faces[__builtin_ctz(faces)], &r->boxes[__builtin_ctz(faces)]))
+            return false;
+    return true;
+}
+
+/* Finds candidates for the largest area around the pixel that has few: the picture if the receiver is small, else its tile, else its block.
+ * False when even that has too many. */
+static inline bool candidates_ready(const struct group *g, struct receiver *r, uint32_t tile)
+{
+    uint32_t tile_area = tile * AREAS_PER_TILE, tx = g->x % TILE_SIDE, ty = g->y % TILE_SIDE;
+    uint32_t block_area = tile_area + 1 + ty / BLOCK_SIDE * BLOCKS_PER_ROW + tx / BLOCK_SIDE;
+    struct quad quad;
+    if (r->candidate_area == AREA_PICTURE || r->candidate_area == tile_area || r->candidate_area == block_area)
+        return r->candidate_count >= 0;
+    if (r->crowded_tile != tile) {
+        if (is_small_everywhere(g->job, r)) {
+            find_candidates(g, r, AREA_PICTURE, NULL);
+            return r->candidate_count >= 0;
+        }
+        if (!r->certain || !quad_make(&quad, g->job, r, g->x - tx, g->y - ty, TILE_SIDE))
+            return false;
+        find_candidates(g, r, tile_area, &quad);
+        if (r->candidate_count >= 0)
+            return true;
+        r->crowded_tile = tile;
+    }
+    if (!quad_make(&quad, g->job, r, g->x - tx % BLOCK_SIDE, g->y - ty % BLOCK_SIDE, BLOCK_SIDE))
+        return false;
+    find_candidates(g, r, block_area, &quad);
+    return r->candidate_count >= 0;
 }
 
 /* Takes the shadowed samples out of g->open. `quad`: where they lie; NULL: not known. A pixel's centre need not lie on its triangle, since the
@@ -207,6 +305,6 @@ static inline void group_cast(struct group *g, const struct quad *quad)
         if (!query_box(g->job, g->center ? NULL : &r->boxes[f], f, quad, &box))
             continue;
         g->box = &box;
-        group_try_face(g, &grid->faces[f]);
+        group_try_face(g, f);
     }
 }

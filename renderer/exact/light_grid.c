@@ -10,6 +10,7 @@
 enum {
     CHUNK = 4096,    /* triangles or cells a job */
     SIDE_MAX = 2048, /* cells of level 0 */
+    BLOCKS_MAX = 64, /* blocks that one box is written to */
     BINS = 1024,     /* of the histogram that level 0 is fitted by */
 };
 /* Part of the triangles that may lie beyond the fitted range, on each side. */
@@ -179,15 +180,51 @@ static void set_reaches(struct light_face *face)
     }
 }
 
-static uint32_t cell_of(const struct light_face *face, const struct light_ref *r)
+static unsigned level_of(const struct light_face *face, const struct light_ref *r)
 {
     unsigned level = 0;
     float wide = (r->u1 - r->u0) * 1.0001f, high = (r->v1 - r->v0) * 1.0001f;
     while (!(wide <= face->reach_u[level] && high <= face->reach_v[level]) && (face->side >> level) > 1)
         level++;
+    return level;
+}
+
+static uint32_t cell_of(const struct light_face *face, const struct light_ref *r, unsigned level)
+{
     return face->level_first[level] +
            (light_cell(r->v0, face->v_start, face->v_scale, face->side) >> level) * (face->side >> level) +
            (light_cell(r->u0, face->u_start, face->u_scale, face->side) >> level);
+}
+
+static void mark_blocks(const struct light_grid *grid, unsigned f, const struct light_ref *r, unsigned level)
+{
+    const struct light_face *face = &grid->faces[f];
+    uint32_t side = light_blocks(face);
+    _Atomic uint16_t *blocks = grid->blocks + (size_t)f * side * side;
+    uint32_t x0 = light_cell(r->u0, face->u_start, face->u_scale, face->side) >> LIGHT_BLOCK_SHIFT,
+             x1 = light_cell(r->u1, face->u_start, face->u_scale, face->side) >> LIGHT_BLOCK_SHIFT,
+             y0 = light_cell(r->v0, face->v_start, face->v_scale, face->side) >> LIGHT_BLOCK_SHIFT,
+             y1 = light_cell(r->v1, face->v_start, face->v_scale, face->side) >> LIGHT_BLOCK_SHIFT;
+    if ((x1 - x0 + 1) * (uint64_t)(y1 - y0 + 1) > BLOCKS_MAX)
+        return;
+    for (uint32_t y = y0; y <= y1; y++)
+        for (uint32_t x = x0; x <= x1; x++) {
+            _Atomic uint16_t *block = &blocks[y * side + x];
+            if (!(atomic_load_explicit(block, memory_order_relaxed) >> level & 1))
+                atomic_fetch_or_explicit(block, (uint16_t)(1u << level), memory_order_relaxed);
+        }
+}
+
+/* Levels whose boxes may be too large to be marked. */
+static uint32_t unmarked_levels(const struct light_face *face)
+{
+    uint32_t levels = 0;
+    for (unsigned level = 0; face->side >> level; level++) {
+        /* A box of the level meets at most so many blocks a side, one more for where it starts and one for rounding. */
+        uint32_t most = (1u << level >> LIGHT_BLOCK_SHIFT) + 3;
+        levels |= (uint32_t)(most * most > BLOCKS_MAX || (face->side >> level) == 1) << level;
+    }
+    return levels;
 }
 
 static void count_refs_of_cells(void *context, size_t chunk, unsigned worker)
@@ -200,7 +237,9 @@ static void count_refs_of_cells(void *context, size_t chunk, unsigned worker)
         struct light_ref *r = &b->refs[i];
         if (is_empty(r))
             continue;
-        r->cell = cell_of(&grid->faces[grid->face_count > 1 ? face_of(grid, r) : 0], r);
+        unsigned f = grid->face_count > 1 ? face_of(grid, r) : 0, level = level_of(&grid->faces[f], r);
+        r->cell = cell_of(&grid->faces[f], r, level);
+        mark_blocks(grid, f, r, level);
         atomic_fetch_add_explicit(&b->cursor[r->cell], 1, memory_order_relaxed);
     }
 }
@@ -260,6 +299,7 @@ static void mark_occupied(struct light_grid *grid)
             uint32_t cells = (face->side >> level) * (face->side >> level), from = face->level_first[level];
             face->occupied |= (uint32_t)(grid->first[from + cells] > grid->first[from]) << level;
         }
+        face->everywhere = face->occupied & unmarked_levels(face);
     }
 }
 
@@ -282,7 +322,8 @@ static void count_cells(struct build *b, struct job_pool *pool)
 
 static uint32_t wanted_side(const struct light_grid *grid)
 {
-    double cells = grid->ref_count / (double)grid->face_count;
+    /* Measured on the dragon and the oak: finer is no faster. */
+    double cells = 0.25 * grid->ref_count / grid->face_count;
     uint32_t side = 8;
     while (side < SIDE_MAX && (double)side * side < cells)
         side *= 2;
@@ -317,10 +358,12 @@ static bool allocate(struct build *b)
 {
     struct light_grid *grid = b->grid;
     grid->u0 = floats(grid), grid->u1 = floats(grid), grid->v0 = floats(grid), grid->v1 = floats(grid), grid->near = floats(grid);
+    uint32_t blocks = light_blocks(&grid->faces[0]);
+    grid->blocks = calloc((size_t)blocks * blocks * grid->face_count, sizeof *grid->blocks);
     grid->ids = calloc((size_t)grid->ref_count + LIGHT_PADDING, sizeof *grid->ids);
     grid->first = malloc(((size_t)grid->cell_count + 1) * sizeof *grid->first);
     b->cursor = malloc(((size_t)grid->cell_count + 1) * sizeof *b->cursor);
-    return grid->u0 && grid->u1 && grid->v0 && grid->v1 && grid->near && grid->ids && grid->first && b->cursor;
+    return grid->u0 && grid->u1 && grid->v0 && grid->v1 && grid->near && grid->ids && grid->blocks && grid->first && b->cursor;
 }
 
 static bool list_all(struct build *b, size_t memory, struct job_pool *pool)
@@ -363,6 +406,7 @@ void light_grid_finish(struct light_grid *grid)
     free(grid->v1);
     free(grid->near);
     free(grid->ids);
+    free((void *)grid->blocks);
     free(grid->first);
     memset(grid, 0, sizeof *grid);
 }

@@ -17,7 +17,7 @@
 
 struct job_pool;
 
-enum { LIGHT_FACES_MAX = 6, LIGHT_LEVELS_MAX = 13, LIGHT_PADDING = 16 };
+enum { LIGHT_FACES_MAX = 6, LIGHT_LEVELS_MAX = 13, LIGHT_PADDING = 16, LIGHT_BLOCK_SHIFT = 2 };
 
 /* u, v: on the plane at distance 1 from a point or spot light; scene units for a directional one. near, far: along face.forward. */
 struct light_box {
@@ -30,6 +30,7 @@ struct light_face {
     float u_start, v_start, u_scale, v_scale; /* level 0: cell = (u - start) * scale */
     uint32_t side;                            /* cells of level 0 in each direction; a power of two */
     uint32_t occupied;                        /* bit a level: it has entries */
+    uint32_t everywhere;                      /* bit a level: some of its boxes are too large for blocks */
     uint32_t level_first[LIGHT_LEVELS_MAX];   /* first cell of each level */
     float reach_u[LIGHT_LEVELS_MAX], reach_v[LIGHT_LEVELS_MAX]; /* no box of the level is wider, higher */
 };
@@ -44,6 +45,7 @@ struct light_grid {
     uint32_t ref_count;
     uint32_t *first; /* boxes of each cell, one more than cells */
     uint32_t cell_count;
+    _Atomic uint16_t *blocks; /* face by face, 4 x 4 cells of level 0 each: bit a level: boxes of it meet the block */
     size_t bytes;
 };
 
@@ -69,6 +71,11 @@ static inline float box_above(double x) { return (float)x + (fabsf((float)x) * 0
 /* Of two numbers; unlike fminf() without a call. */
 static inline float box_min(float a, float b) { return a < b ? a : b; }
 static inline float box_max(float a, float b) { return a > b ? a : b; }
+
+static inline uint32_t light_blocks(const struct light_face *face)
+{
+    return face->side >> LIGHT_BLOCK_SHIFT ? face->side >> LIGHT_BLOCK_SHIFT : 1;
+}
 
 static inline uint32_t light_cell(float u, float start, float scale, uint32_t side)
 {

@@ -3,13 +3,14 @@
 
 #include "exact/simd.h"
 #include "exact/tile.h"
+#include "reference/filter.h"
 
 static inline struct exact_apex eye_of(const struct view *view)
 {
     return (struct exact_apex){view->orthographic, view->orthographic ? view->forward : view->eye};
 }
 
-static __attribute__((noinline)) const struct occluder *occluder_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
+static inline const struct occluder *occluder_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct occluder *o = &s->occluders[id % OCCLUDERS_KEPT];
     if (o->id == id)
@@ -32,7 +33,7 @@ static __attribute__((noinline)) const struct occluder *occluder_get(struct tile
     return o;
 }
 
-static __attribute__((noinline)) void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)
+static inline void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct dvec3 c[3];
     struct forms forms;
@@ -58,6 +59,7 @@ static __attribute__((noinline)) void receiver_make(struct receiver *r, struct t
     r->to_light.x *= side;
     r->to_light.y *= side;
     r->to_light.z *= side;
+    r->candidate_area = r->crowded_tile = AREA_NONE;
     r->faces_met = 0;
     for (unsigned f = 0; f < job->grid->face_count; f++)
         r->faces_met |= (unsigned)(light_face_box(job->grid, &job->grid->faces[f], c, 3, 0, &r->boxes[f]) == FACE_SOME) << f;
@@ -67,7 +69,7 @@ static __attribute__((noinline)) void receiver_make(struct receiver *r, struct t
  * the light and an edge of the receiver, or below the receiver's own plane. A corner that they share lies on that plane, exactly, and
  * the rest beyond: then the open line from a point of the receiver to the light does not meet the closed triangle, whatever the tie
  * rule. That settles a dense mesh's neighbours. `anywhere`: the points may lie outside the receiver's edges, on its plane. */
-static inline __attribute__((always_inline)) bool cannot_shadow(const struct receiver *r, const struct tile_job *job, uint32_t id,
+static inline bool cannot_shadow(const struct receiver *r, const struct tile_job *job, uint32_t id,
                                                                 bool anywhere)
 {
     /* Edges ab, bc, ca and the plane that each set of corners lies on. */
@@ -86,7 +88,31 @@ static inline __attribute__((always_inline)) bool cannot_shadow(const struct rec
     return beyond != 0;
 }
 
-static inline const struct receiver *receiver_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
+/* True when the receiver's triangle certainly lies on the light's side of `id`, corners that they share on its plane. */
+static inline bool is_on_lit_side(const struct receiver *r, const struct tile_job *job, uint32_t id)
+{
+    const struct forms *f = &r->to_light;
+    struct dvec3 c[3];
+    triangle_corners(job->triangles, id, c);
+    struct dvec3 u = dvec3_sub(c[1], c[0]), v = dvec3_sub(c[2], c[0]);
+    struct form plane = form_make(u, v, c[0]);
+    double error, light = job->to_light.infinite ? form_slope(&plane, job->to_light.v, &error)
+                                                 : form_value(&plane, job->to_light.v, 0, &error);
+    if (!(fabs(light) > error))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        struct dvec3 p = dvec3(f->ax[k], f->ay[k], f->az[k]);
+        double value = form_value(&plane, p, 0, &error) * (light > 0 ? 1 : -1);
+        bool shared = false;
+        for (int i = 0; i < 3; i++)
+            shared |= c[i].x == p.x && c[i].y == p.y && c[i].z == p.z;
+        if (!shared && !(value > error))
+            return false;
+    }
+    return true;
+}
+
+static inline struct receiver *receiver_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct receiver *r = &s->seen[id % RECEIVERS_KEPT];
     if (r->id != id)
@@ -139,11 +165,16 @@ static inline bool quad_make(struct quad *q, const struct tile_job *job, const s
     return true;
 }
 
+static inline bool light_reaches_all(const struct light *light)
+{
+    return light->kind == LIGHT_DIRECTIONAL || (light->kind == LIGHT_POINT && !(light->range > 0));
+}
+
 /* Whether all, none or some of the convex hull of `q` lies within the light's cone and range: 1, 0, -1. The functions compared have slopes of
  * at most 2. */
 static inline int quad_within_reach(const struct light *light, const struct quad *q)
 {
-    if (light->kind == LIGHT_DIRECTIONAL || (light->kind == LIGHT_POINT && !(light->range > 0)))
+    if (light_reaches_all(light))
         return 1;
     struct dvec3 middle = dvec3(0.5 * (q->x[0] + q->x[3]), 0.5 * (q->y[0] + q->y[3]), 0.5 * (q->z[0] + q->z[3]));
     struct dvec3 v = dvec3_sub(middle, light->position);

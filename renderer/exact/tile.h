@@ -7,7 +7,7 @@
 #include "exact/lines.h"
 #include "exact/slow.h"
 
-enum { TILE_PIXELS = TILE_SIDE * TILE_SIDE, OCCLUDERS_KEPT = 512, RECEIVERS_KEPT = 256 };
+enum { TILE_PIXELS = TILE_SIDE * TILE_SIDE, OCCLUDERS_KEPT = 1024, RECEIVERS_KEPT = 512, CANDIDATES_MAX = 12 };
 
 struct tile_job {
     const struct triangles *triangles;
@@ -40,7 +40,17 @@ struct receiver {
     struct forms to_light; /* seen from the light: positive inside its edges, and on the light's side of its plane */
     unsigned faces_met;    /* bit a face of the grid */
     struct light_box boxes[LIGHT_FACES_MAX];
+    int candidate_count; /* what may shadow its points in `candidate_area`, or CANDIDATES_MANY: ask the grid */
+    uint32_t candidate_area;
+    uint32_t crowded_tile; /* the last tile with too many candidates */
+    uint32_t candidates[CANDIDATES_MAX];
 };
+enum { CANDIDATES_MANY = -1 };
+
+/* Areas of the picture whose pixels share a receiver's candidates: all of it, a tile, or a block of BLOCK_SIDE x BLOCK_SIDE pixels. */
+enum { BLOCK_SIDE = 4, BLOCKS_PER_ROW = TILE_SIDE / BLOCK_SIDE, AREAS_PER_TILE = 1 + BLOCKS_PER_ROW * BLOCKS_PER_ROW };
+#define AREA_PICTURE (UINT32_MAX - 1)
+#define AREA_NONE    UINT32_MAX
 
 struct tile_counts {
     uint64_t receivers; /* samples that may receive */

@@ -4,16 +4,17 @@
 #include "exact/visible.h"
 
 /* The samples in `mask` of one pixel, which all see receiver `id`: those that receive, and those of them that are lit. */
-static __attribute__((noinline)) uint32_t shade_group(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t mask, uint32_t x,
-                                   uint32_t y, uint32_t *lit)
+static inline uint32_t shade_group(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t mask, uint32_t x,
+                                   uint32_t y, uint32_t tile, uint32_t *lit)
 {
-    const struct receiver *r = receiver_get(s, job, id);
+    struct receiver *r = receiver_get(s, job, id);
     struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = mask, .certain = r->certain};
     struct quad quad;
     if (r->certain && !r->faces)
         return 0;
-    bool placed = r->certain && quad_make(&quad, job, r, x, y, 1);
-    int reached = placed ? quad_within_reach(job->light, &quad) : -1;
+    bool listed = candidates_ready(&g, r, tile), reaches_all = light_reaches_all(job->light);
+    bool placed = r->certain && !(listed && reaches_all) && quad_make(&quad, job, r, x, y, 1);
+    int reached = reaches_all ? 1 : placed ? quad_within_reach(job->light, &quad) : -1;
     if (!r->certain || reached < 0) {
         for (uint32_t bits = mask; bits; bits &= bits - 1) {
             unsigned i = (unsigned)__builtin_ctz(bits);
@@ -26,14 +27,17 @@ static __attribute__((noinline)) uint32_t shade_group(struct tile_scratch *s, co
     }
     uint32_t receivers = g.open;
     s->counts.receivers += (unsigned)__builtin_popcount(receivers);
-    if (g.open)
+    if (listed)
+        for (int i = 0; i < r->candidate_count && g.open; i++)
+            group_try(&g, r->candidates[i], true);
+    else if (g.open)
         group_cast(&g, placed ? &quad : NULL);
     *lit |= g.open;
     return receivers;
 }
 
 static inline uint32_t shade_pixel(struct tile_scratch *s, const struct tile_job *job, uint32_t pixel, uint32_t x, uint32_t y,
-                                   uint32_t *lit)
+                                   uint32_t tile, uint32_t *lit)
 {
     uint32_t receivers = 0;
     for (uint32_t left = ~0u; left;) {
@@ -42,7 +46,7 @@ static inline uint32_t shade_pixel(struct tile_scratch *s, const struct tile_job
             mask |= wide_same(s->id[pixel] + i, id) << i;
         left &= ~mask;
         if (id != SCENE_NONE)
-            receivers |= shade_group(s, job, id, mask, x, y, lit);
+            receivers |= shade_group(s, job, id, mask, x, y, tile, lit);
     }
     return receivers;
 }
@@ -72,14 +76,19 @@ static inline void tile_samples32(void *context, size_t index, unsigned worker)
         tile_clear(s);
     for (uint32_t i = bins->first[index]; i < bins->first[index + 1]; i++)
         show(s, job, bins->entries[i], x0, y0, width, height);
-    for (uint32_t y = 0; y < height; y++)
-        for (uint32_t x = 0; x < width; x++) {
-            size_t at = (size_t)(y0 + y) * view->width + x0 + x;
-            uint32_t lit = 0, receivers = empty ? 0 : shade_pixel(s, job, y * TILE_SIDE + x, x0 + x, y0 + y, &lit);
-            job->receivers[at] = receivers;
-            job->lit[at] = lit;
-            job->visibility[at] = receivers ? (float)__builtin_popcount(lit) / (float)__builtin_popcount(receivers) : 0;
-        }
+    /* Block by block, since receivers keep their candidates for one. */
+    for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+        const uint32_t inside = BLOCK_SIDE * BLOCK_SIDE, block = i / inside;
+        uint32_t x = block % BLOCKS_PER_ROW * BLOCK_SIDE + i % BLOCK_SIDE,
+                 y = block / BLOCKS_PER_ROW * BLOCK_SIDE + i % inside / BLOCK_SIDE, lit = 0;
+        if (x >= width || y >= height)
+            continue;
+        uint32_t receivers = empty ? 0 : shade_pixel(s, job, y * TILE_SIDE + x, x0 + x, y0 + y, (uint32_t)index, &lit);
+        size_t at = (size_t)(y0 + y) * view->width + x0 + x;
+        job->receivers[at] = receivers;
+        job->lit[at] = lit;
+        job->visibility[at] = receivers ? (float)__builtin_popcount(lit) / (float)__builtin_popcount(receivers) : 0;
+    }
 }
 
 /* 1 lit. */

@@ -86,7 +86,7 @@ static inline bool keys_between(const struct view *v, double low, double high)
     return low > farthest + 1e-12 * fabs(farthest) && high < nearest - 1e-12 * fabs(nearest);
 }
 
-static __attribute__((noinline)) void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
+static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
                                  uint32_t x, uint32_t y)
 {
     float keys[32] = {0};
