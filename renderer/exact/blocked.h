@@ -82,9 +82,9 @@ struct group {
     const struct receiver *receiver;
     const struct light_box *box;
     uint32_t x, y;
-    uint32_t open; /* samples not yet shadowed */
-    bool center;   /* one sample, the pixel's centre (bit 0), else view_samples32 */
-    bool certain;  /* the receiver's lines say where its points are */
+    uint32_t open;            /* samples not yet shadowed */
+    bool center;              /* one sample, the pixel's centre (bit 0), else view_samples32 */
+    bool certain;             /* the receiver's lines say where its points are */
     struct receiver *collect; /* put candidates there instead of trying them */
 };
 
@@ -122,7 +122,7 @@ static inline void try_one_by_one(struct group *g, const struct occluder *o, con
 static inline void group_collect(struct group *g, uint32_t id)
 {
     struct receiver *r = g->collect;
-    if (cannot_shadow(r, g->job, id, false) || is_on_lit_side(r, g->job, id))
+    if (cannot_shadow(r, g->job, id, g->center) || (!g->center && is_on_lit_side(r, g->job, id)))
         return;
     if (r->candidate_count == CANDIDATES_MAX) {
         r->candidate_count = CANDIDATES_MANY;
@@ -165,7 +165,8 @@ static inline void group_try_run(struct group *g, uint32_t from, uint32_t to)
 {
     const struct light_grid *grid = g->job->grid;
     const struct light_box *box = g->box;
-    const wide u0 = wide_all(box->u0), u1 = wide_all(box->u1), v0 = wide_all(box->v0), v1 = wide_all(box->v1), far = wide_all(box->far);
+    const wide u0 = wide_all(box->u0), u1 = wide_all(box->u1), v0 = wide_all(box->v0), v1 = wide_all(box->v1),
+               far = wide_all(box->far);
     const unsigned all = WIDTH == 32 ? ~0u : (1u << WIDTH % 32) - 1;
     for (uint32_t i = from; i < to; i += WIDTH) {
         unsigned apart = wide_above(wide_load(grid->u0 + i), u1) | wide_above(u0, wide_load(grid->u1 + i)) |
@@ -240,6 +241,12 @@ static inline bool is_small(const struct light_face *face, const struct light_bo
     return (box->u1 - box->u0) * face->u_scale < 4 && (box->v1 - box->v0) * face->v_scale < 4;
 }
 
+/* A pixel's centre need not lie on its triangle, since the camera pass may round. */
+static inline unsigned faces_for(const struct group *g)
+{
+    return g->center ? (1u << g->job->grid->face_count) - 1 : g->receiver->faces_met;
+}
+
 /* Finds what may shadow the receiver within `quad` (NULL: anywhere). */
 static inline void find_candidates(const struct group *g, struct receiver *r, uint32_t area, const struct quad *quad)
 {
@@ -248,10 +255,10 @@ static inline void find_candidates(const struct group *g, struct receiver *r, ui
     all.open = 1;
     r->candidate_area = area;
     r->candidate_count = 0;
-    for (unsigned faces = r->faces_met; faces && all.open; faces &= faces - 1) {
+    for (unsigned faces = faces_for(g); faces && all.open; faces &= faces - 1) {
         unsigned f = (unsigned)__builtin_ctz(faces);
         struct light_box box;
-        if (!query_box(g->job, &r->boxes[f], f, quad, &box))
+        if (!query_box(g->job, g->center ? NULL : &r->boxes[f], f, quad, &box))
             continue;
         all.box = &box;
         group_try_face(&all, f);
@@ -277,6 +284,8 @@ static inline bool candidates_ready(const struct group *g, struct receiver *r, u
         return r->candidate_count >= 0;
     if (r->crowded_tile != tile) {
         if (is_small_everywhere(g->job, r)) {
+            if (g->center)
+                return false;
             find_candidates(g, r, AREA_PICTURE, NULL);
             return r->candidate_count >= 0;
         }
@@ -293,13 +302,11 @@ static inline bool candidates_ready(const struct group *g, struct receiver *r, u
     return r->candidate_count >= 0;
 }
 
-/* Takes the shadowed samples out of g->open. `quad`: where they lie; NULL: not known. A pixel's centre need not lie on its triangle, since the
- * camera pass may round. */
+/* Takes the shadowed samples out of g->open. `quad`: where they lie; NULL: not known. */
 static inline void group_cast(struct group *g, const struct quad *quad)
 {
-    const struct light_grid *grid = g->job->grid;
     const struct receiver *r = g->receiver;
-    for (unsigned faces = g->center ? (1u << grid->face_count) - 1 : r->faces_met; faces && g->open; faces &= faces - 1) {
+    for (unsigned faces = faces_for(g); faces && g->open; faces &= faces - 1) {
         unsigned f = (unsigned)__builtin_ctz(faces);
         struct light_box box;
         if (!query_box(g->job, g->center ? NULL : &r->boxes[f], f, quad, &box))

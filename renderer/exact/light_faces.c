@@ -81,7 +81,8 @@ static struct light_face face_along(struct dvec3 forward, double limit)
 static void to_corners(const struct dbox *box, struct dvec3 position, struct dvec3 out[8])
 {
     for (int i = 0; i < 8; i++) {
-        struct dvec3 corner = dvec3(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y, i & 4 ? box->max.z : box->min.z);
+        struct dvec3 corner =
+            dvec3(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y, i & 4 ? box->max.z : box->min.z);
         out[i] = dvec3_normalize(dvec3_sub(corner, position));
     }
 }

@@ -83,8 +83,8 @@ static void make_refs_of_one_face(void *context, size_t index, unsigned worker)
     struct light_box box;
     for (uint32_t id = first; id < end; id++)
         b->refs[id] = counts_on_face(b, id, &b->grid->faces[0], &box)
-                                ? (struct light_ref){box.u0, box.u1, box.v0, box.v1, box.near, id}
-                                : (struct light_ref){INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, id};
+                          ? (struct light_ref){box.u0, box.u1, box.v0, box.v1, box.near, id}
+                          : (struct light_ref){INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, id};
 }
 
 static bool all_refs(struct build *b, struct job_pool *pool)
@@ -323,7 +323,7 @@ static void count_cells(struct build *b, struct job_pool *pool)
 static uint32_t wanted_side(const struct light_grid *grid)
 {
     /* Measured on the dragon and the oak: finer is no faster. */
-    double cells = 0.25 * grid->ref_count / grid->face_count;
+    double cells = 0.06 * grid->ref_count / grid->face_count;
     uint32_t side = 8;
     while (side < SIDE_MAX && (double)side * side < cells)
         side *= 2;

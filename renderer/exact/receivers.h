@@ -10,6 +10,17 @@ static inline struct exact_apex eye_of(const struct view *view)
     return (struct exact_apex){view->orthographic, view->orthographic ? view->forward : view->eye};
 }
 
+/* slow_light_side(), from forms seen from the light where they decide. */
+static inline int light_side(struct tile_scratch *s, const struct tile_job *job, const struct forms *f, uint32_t id)
+{
+    const struct dvec3 *l = &job->to_light.v;
+    bool infinite = job->to_light.infinite;
+    double x = infinite ? l->x : l->x - f->ax[3], y = infinite ? l->y : l->y - f->ay[3], z = infinite ? l->z : l->z - f->az[3];
+    double value = f->x[3] * x + f->y[3] * y + f->z[3] * z;
+    double error = LINE_ROUNDING * f->size[3] * (fabs(x) + fabs(y) + fabs(z)) + LINE_UNDERFLOW;
+    return fabs(value) > error ? (value > 0 ? 1 : -1) : slow_light_side(&s->slow, id);
+}
+
 static inline const struct occluder *occluder_get(struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct occluder *o = &s->occluders[id % OCCLUDERS_KEPT];
@@ -21,7 +32,7 @@ static inline const struct occluder *occluder_get(struct tile_scratch *s, const 
     forms_make(&forms, &job->to_light, &c[0], &c[1], &c[2]);
     lines_make(&o->lines, &forms, &job->screen);
     o->id = id;
-    o->side = slow_light_side(&s->slow, id);
+    o->side = light_side(s, job, &forms, id);
     double k = o->side;
     lane4 scale = (lane4){k, k, k, -k} / (o->lines.fixed_size + o->lines.v_size + LINE_UNDERFLOW), size = lane_abs(scale);
     o->lines.fixed *= scale;
@@ -53,9 +64,9 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
     r->certain = fabs(r->fixed) > LINE_ROUNDING * r->fixed_size + LINE_UNDERFLOW;
     /* N . d where the camera sees it: against F in perspective, F itself else. */
     int slope = (lines.fixed[3] > 0) == job->view->orthographic ? 1 : -1;
-    int side = slow_light_side(&s->slow, id);
-    r->faces = slope * side < 0;
     forms_make(&r->to_light, &job->to_light, &c[0], &c[1], &c[2]);
+    int side = light_side(s, job, &r->to_light, id);
+    r->faces = slope * side < 0;
     r->to_light.x *= side;
     r->to_light.y *= side;
     r->to_light.z *= side;
@@ -69,8 +80,7 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
  * the light and an edge of the receiver, or below the receiver's own plane. A corner that they share lies on that plane, exactly, and
  * the rest beyond: then the open line from a point of the receiver to the light does not meet the closed triangle, whatever the tie
  * rule. That settles a dense mesh's neighbours. `anywhere`: the points may lie outside the receiver's edges, on its plane. */
-static inline bool cannot_shadow(const struct receiver *r, const struct tile_job *job, uint32_t id,
-                                                                bool anywhere)
+static inline bool cannot_shadow(const struct receiver *r, const struct tile_job *job, uint32_t id, bool anywhere)
 {
     /* Edges ab, bc, ca and the plane that each set of corners lies on. */
     static const uint8_t on[8] = {0, 1 | 4 | 8, 1 | 2 | 8, 0, 2 | 4 | 8, 0, 0, 0};
@@ -160,8 +170,8 @@ static inline bool quad_make(struct quad *q, const struct tile_job *job, const s
     lane4 off = flat ? lane_all(LINE_ROUNDING * (r->v_size + fabs(r->fixed_size)) / fabs(r->fixed)) * (1 + lane_abs(t))
                      : t * (LINE_ROUNDING * (r->v_size / v + r->fixed_size / fabs(r->fixed)) + LINE_ROUNDING);
     q->x = ax, q->y = ay, q->z = az;
-    q->slack =
-        2 * lane_most(off) * (flat ? 1 : s->size) + LINE_ROUNDING * (fabs(s->fixed.x) + fabs(s->fixed.y) + fabs(s->fixed.z) + s->size);
+    q->slack = 2 * lane_most(off) * (flat ? 1 : s->size) +
+               LINE_ROUNDING * (fabs(s->fixed.x) + fabs(s->fixed.y) + fabs(s->fixed.z) + s->size);
     return true;
 }
 
@@ -197,7 +207,8 @@ static inline int quad_within_reach(const struct light *light, const struct quad
 }
 
 /* light_face_box() of a quad on a face without limits, all of it before the light; false: not so, ask light_face_box(). */
-static inline bool quad_box(const struct light_grid *grid, const struct light_face *face, const struct quad *q, struct light_box *box)
+static inline bool quad_box(const struct light_grid *grid, const struct light_face *face, const struct quad *q,
+                            struct light_box *box)
 {
     const struct dvec3 none = {0, 0, 0}, *from = grid->directional ? &none : &grid->position;
     const struct dvec3 *r = &face->right, *up = &face->up, *f = &face->forward;
@@ -214,7 +225,7 @@ static inline bool quad_box(const struct light_grid *grid, const struct light_fa
         dv = k * (1 + lane_most(lane_abs(v)));
     }
     *box = (struct light_box){box_below(lane_least(u) - du), box_above(lane_most(u) + du), box_below(lane_least(v) - dv),
-                              box_above(lane_most(v) + dv), box_below(nearest - error), box_above(lane_most(depth) + error)};
+                              box_above(lane_most(v) + dv),  box_below(nearest - error),   box_above(lane_most(depth) + error)};
     return true;
 }
 

@@ -73,6 +73,13 @@ bool slow_meets(struct slow *s, const struct sample_ray *ray, uint32_t id)
            compare_limit(s, ray, c, s->view->far) <= 0 && is_solid(s, id, c, ray->origin, ray->direction);
 }
 
+bool slow_sees_solid(const struct slow *s, const struct sample_ray *ray, uint32_t id)
+{
+    struct dvec3 c[3];
+    triangle_corners(s->triangles, id, c);
+    return is_solid(s, id, c, ray->origin, ray->direction);
+}
+
 bool slow_is_before(struct slow *s, const struct sample_ray *ray, uint32_t first, uint32_t second)
 {
     struct dvec3 a[3], b[3];

@@ -31,6 +31,9 @@ bool slow_crosses(struct slow *s, const struct sample_ray *ray, uint32_t id);
 /* Everything else that "meets" asks: slope, near and far, hidden faces, the mask. */
 bool slow_meets(struct slow *s, const struct sample_ray *ray, uint32_t id);
 
+/* True when the ray, which crosses the inside of `id`, finds it solid there. */
+bool slow_sees_solid(const struct slow *s, const struct sample_ray *ray, uint32_t id);
+
 /* True when the ray meets `first` before `second` (both are met): nearer, or as near with the lower id. */
 bool slow_is_before(struct slow *s, const struct sample_ray *ray, uint32_t first, uint32_t second);
 

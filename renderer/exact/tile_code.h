@@ -51,6 +51,18 @@ static inline uint32_t shade_pixel(struct tile_scratch *s, const struct tile_job
     return receivers;
 }
 
+struct tile_pixel {
+    uint32_t x, y;
+};
+
+/* Block by block, since receivers keep their candidates for one. */
+static inline struct tile_pixel pixel_in_order(uint32_t i)
+{
+    const uint32_t inside = BLOCK_SIDE * BLOCK_SIDE, block = i / inside;
+    return (struct tile_pixel){block % BLOCKS_PER_ROW * BLOCK_SIDE + i % BLOCK_SIDE,
+                               block / BLOCKS_PER_ROW * BLOCK_SIDE + i % inside / BLOCK_SIDE};
+}
+
 static inline void tile_clear(struct tile_scratch *s)
 {
     for (int p = 0; p < TILE_PIXELS; p++) {
@@ -76,11 +88,8 @@ static inline void tile_samples32(void *context, size_t index, unsigned worker)
         tile_clear(s);
     for (uint32_t i = bins->first[index]; i < bins->first[index + 1]; i++)
         show(s, job, bins->entries[i], x0, y0, width, height);
-    /* Block by block, since receivers keep their candidates for one. */
     for (uint32_t i = 0; i < TILE_PIXELS; i++) {
-        const uint32_t inside = BLOCK_SIDE * BLOCK_SIDE, block = i / inside;
-        uint32_t x = block % BLOCKS_PER_ROW * BLOCK_SIDE + i % BLOCK_SIDE,
-                 y = block / BLOCKS_PER_ROW * BLOCK_SIDE + i % inside / BLOCK_SIDE, lit = 0;
+        uint32_t x = pixel_in_order(i).x, y = pixel_in_order(i).y, lit = 0;
         if (x >= width || y >= height)
             continue;
         uint32_t receivers = empty ? 0 : shade_pixel(s, job, y * TILE_SIDE + x, x0 + x, y0 + y, (uint32_t)index, &lit);
@@ -92,11 +101,12 @@ static inline void tile_samples32(void *context, size_t index, unsigned worker)
 }
 
 /* 1 lit. */
-static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t x, uint32_t y)
+static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t x, uint32_t y,
+                                uint32_t tile)
 {
     if (id == SCENE_NONE || job->triangles->flags[id] & TRIANGLE_IGNORED)
         return false;
-    const struct receiver *r = receiver_get(s, job, id);
+    struct receiver *r = receiver_get(s, job, id);
     struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = 1, .center = true};
     struct quad quad;
     bool placed = g.certain = r->certain && quad_make(&quad, job, r, x + 0.5, y + 0.5, 0);
@@ -108,7 +118,11 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     if (!reached)
         return false;
     s->counts.receivers++;
-    group_cast(&g, placed ? &quad : NULL);
+    if (!placed || !candidates_ready(&g, r, tile))
+        group_cast(&g, placed ? &quad : NULL);
+    else
+        for (int i = 0; i < r->candidate_count && g.open; i++)
+            group_try(&g, r->candidates[i], true);
     return g.open;
 }
 
@@ -119,9 +133,12 @@ static inline void tile_point(void *context, size_t index, unsigned worker)
     const struct view *view = job->view;
     uint32_t columns = (view->width + TILE_SIDE - 1) / TILE_SIDE;
     uint32_t x0 = (uint32_t)(index % columns) * TILE_SIDE, y0 = (uint32_t)(index / columns) * TILE_SIDE;
-    for (uint32_t y = y0; y < y0 + TILE_SIDE && y < view->height; y++)
-        for (uint32_t x = x0; x < x0 + TILE_SIDE && x < view->width; x++) {
-            size_t at = (size_t)y * view->width + x;
-            job->visibility[at] = point_is_lit(s, job, job->ids[at], x, y) ? 1.0f : 0.0f;
-        }
+    for (uint32_t i = 0; i < TILE_PIXELS; i++) {
+        struct tile_pixel p = pixel_in_order(i);
+        uint32_t x = x0 + p.x, y = y0 + p.y;
+        if (x >= view->width || y >= view->height)
+            continue;
+        size_t at = (size_t)y * view->width + x;
+        job->visibility[at] = point_is_lit(s, job, job->ids[at], x, y, (uint32_t)index) ? 1.0f : 0.0f;
+    }
 }

@@ -7,7 +7,7 @@
 /* A triangle being put into a tile. */
 struct shown {
     uint32_t id;
-    bool certain;           /* its lines and keys mean something */
+    bool certain; /* its lines and keys mean something */
     bool holes;
     bool between;           /* wholly between near and far */
     lane4 v, vx, vy, error; /* edges, positive inside; lane 3 always */
@@ -58,24 +58,32 @@ static inline bool shown_make(struct shown *t, const struct tile_job *job, uint3
     return true;
 }
 
+/* What is known of samples that a triangle may have in a pixel. */
+struct contest {
+    uint32_t crossed; /* it certainly crosses them */
+    uint32_t won;     /* and is certainly the nearest yet, between near and far: but for its mask it has them */
+    float keys[32], error;
+};
+
 /* Samples of `bits` that the triangle has now, decided one by one. */
 static inline void show_slowly(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
-                               uint32_t x, uint32_t y, uint32_t bits, uint32_t crossed, const float keys[32], float error)
+                               uint32_t x, uint32_t y, uint32_t bits, const struct contest *c)
 {
     uint32_t *ids = s->id[pixel];
     for (; bits; bits &= bits - 1) {
         unsigned i = (unsigned)__builtin_ctz(bits);
         struct sample_ray ray = sample_ray(job->view, x + (double)view_samples32[i][0], y + (double)view_samples32[i][1]);
-        if (!(crossed >> i & 1) && !slow_crosses(&s->slow, &ray, t->id))
+        if (c->won >> i & 1) {
+            if (!slow_sees_solid(&s->slow, &ray, t->id))
+                continue;
+        } else if ((!(c->crossed >> i & 1) && !slow_crosses(&s->slow, &ray, t->id)) || !slow_meets(&s->slow, &ray, t->id) ||
+                   (ids[i] != SCENE_NONE && !slow_is_before(&s->slow, &ray, t->id, ids[i]))) {
             continue;
-        if (!slow_meets(&s->slow, &ray, t->id))
-            continue;
-        if (ids[i] != SCENE_NONE && !slow_is_before(&s->slow, &ray, t->id, ids[i]))
-            continue;
+        }
         ids[i] = t->id;
-        s->key[pixel][i] = t->certain ? keys[i] : 0;
-        if (!(error <= s->key_error[pixel]))
-            s->key_error[pixel] = error;
+        s->key[pixel][i] = t->certain ? c->keys[i] : 0;
+        if (!(c->error <= s->key_error[pixel]))
+            s->key_error[pixel] = c->error;
     }
 }
 
@@ -89,9 +97,9 @@ static inline bool keys_between(const struct view *v, double low, double high)
 static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
                                  uint32_t x, uint32_t y)
 {
-    float keys[32] = {0};
+    struct contest contest = {.error = INFINITY};
     if (!t->certain) {
-        show_slowly(s, job, t, pixel, x, y, ~0u, 0, keys, INFINITY);
+        show_slowly(s, job, t, pixel, x, y, ~0u, &contest);
         return;
     }
     struct pixel_lines p = {.g = t->v + (double)x * t->vx + (double)y * t->vy, .gx = t->vx, .gy = t->vy, .error = t->error};
@@ -104,11 +112,12 @@ static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *
         return;
     double key = t->key + x * t->key_x + y * t->key_y;
     float own = (float)(t->key_error + (fabs(key) + fabs(t->key_x) + fabs(t->key_y)) * SINGLE_ROUNDING + SINGLE_UNDERFLOW);
-    bool plain = !t->holes;
-    if (plain && !t->between) {
+    bool between = t->between;
+    if (!between) {
         double rise = (t->key_x > 0 ? t->key_x : 0) + (t->key_y > 0 ? t->key_y : 0);
-        plain = keys_between(job->view, key + rise - fabs(t->key_x) - fabs(t->key_y) - (double)own, key + rise + (double)own);
+        between = keys_between(job->view, key + rise - fabs(t->key_x) - fabs(t->key_y) - (double)own, key + rise + (double)own);
     }
+    bool plain = between && !t->holes;
     float error = own > s->key_error[pixel] ? own : s->key_error[pixel];
     uint32_t nearer = 0, farther = 0;
     wide k0 = wide_all((float)key), kx = wide_all((float)t->key_x), ky = wide_all((float)t->key_y), room = wide_all(own + error);
@@ -119,15 +128,19 @@ static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *
         nearer |= above << i;
         farther |= wide_above(wide_sub(wide_all(0), room), over) << i;
         unsigned take = plain ? above & sure.inside >> i : 0;
-        wide_put(keys + i, value, ~0u);
+        wide_put(contest.keys + i, value, ~0u);
         wide_put(s->key[pixel] + i, value, take & ((1ull << WIDTH) - 1));
         wide_put_id(s->id[pixel] + i, t->id, take & ((1ull << WIDTH) - 1));
     }
     if (plain && (nearer & sure.inside))
         s->key_error[pixel] = error;
     uint32_t slowly = (unsure & ~farther) | (sure.inside & ~farther & (plain ? ~nearer : ~0u));
-    if (slowly)
-        show_slowly(s, job, t, pixel, x, y, slowly, sure.inside, keys, error);
+    if (!slowly)
+        return;
+    contest.crossed = sure.inside;
+    contest.won = between ? sure.inside & nearer : 0;
+    contest.error = error;
+    show_slowly(s, job, t, pixel, x, y, slowly, &contest);
 }
 
 /* Pixels [from, to) of `length` that [low, high] in picture positions meets. */
