@@ -3,6 +3,7 @@
  * tight: fitted to the casters, whatever the camera sees, so that a moving camera rebuilds nothing. A directional light has one map; a point or
  * spot light one perspective map if all casters (of a spot: those in its cone) lie within 120 degrees, else those cube faces that hold
  * casters. cube: always cube faces; for a directional light a square around the bounding sphere. Receivers outside the maps are lit.
+ * A point or spot light more than 8192 scene radii away is fitted as the directional light it is, for all that single precision can tell.
  * A planar instance with everything else on the light's side of it casts nothing. */
 #pragma once
 

@@ -91,7 +91,10 @@ static void put_entry(const struct build *b, uint32_t *counts, uint32_t bin, uin
 static void put_wild(const struct build *b, const struct light_part *part, uint32_t id, uint32_t *wild)
 {
     struct geometry_map *m = b->map;
-    if (light_part_degenerate(m->mesh.scene, part, id))
+    struct dvec3 c[3];
+    for (unsigned k = 0; k < 3; k++)
+        c[k] = light_part_corner(&m->mesh, part, id, k);
+    if (light_corners_miss(&m->mesh, c, 0, 0, m->size, m->size) || light_part_degenerate(m->mesh.scene, part, id))
         return;
     if (b->filling)
         m->wild[*wild] = id;

@@ -148,6 +148,22 @@ struct dvec3 light_part_corner(const struct light_mesh *m, const struct light_pa
     return dvec3(dvec3_dot(d, m->view.right), dvec3_dot(d, m->view.up), dvec3_dot(d, m->view.forward));
 }
 
+bool light_corners_miss(const struct light_mesh *m, const struct dvec3 corners[3], double left, double top, double right,
+                        double bottom)
+{
+    bool beyond[4] = {true, true, true, true}, behind = !m->view.orthographic;
+    for (int k = 0; k < 3; k++) {
+        double w = m->view.orthographic ? 1 : corners[k].z;
+        double x = corners[k].x * m->scale_x + m->offset_x * w, y = corners[k].y * m->scale_y + m->offset_y * w;
+        beyond[0] &= x < (left - 1) * w;
+        beyond[1] &= x > (right + 1) * w;
+        beyond[2] &= y < (top - 1) * w;
+        beyond[3] &= y > (bottom + 1) * w;
+        behind &= corners[k].z <= 0;
+    }
+    return behind || beyond[0] || beyond[1] || beyond[2] || beyond[3];
+}
+
 /* Of a wild triangle, by the volumes that the direction through (x, y) spans with each edge: right for corners behind the light too (Olano and
  * Greer 1997, "Triangle scan conversion using 2D homogeneous coordinates"). e[k] belongs to corner k. */
 static void wild_volumes(const struct light_mesh *m, const struct dvec3 c[3], float x, float y, double e[3])

@@ -152,5 +152,10 @@ struct light_sides light_triangle_sides(const struct light_mesh *m, const struct
 /* Zero area, exactly, or a corner that is not finite: such triangles cast nothing. */
 bool light_part_degenerate(const struct scene *scene, const struct light_part *part, uint32_t id);
 
+/* True only if a triangle with these corners (light_part_corner) touches nothing of the window of texels: all of it lies behind the light, or
+ * a texel or more beyond one side. */
+bool light_corners_miss(const struct light_mesh *m, const struct dvec3 corners[3], double left, double top, double right,
+                        double bottom);
+
 /* Corner k of `id` along the view's axes, in double. */
 struct dvec3 light_part_corner(const struct light_mesh *m, const struct light_part *part, uint32_t id, unsigned k);

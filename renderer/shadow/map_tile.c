@@ -242,11 +242,14 @@ static void set_wild(struct wild_facet *f, const struct light_mesh *m, const str
         to_map(m, dvec3_scale(normal, 1 / volume), f->n);
 }
 
-static double highest(const double e[3], double x, double y)
+/* Over a square of `side` texels about (x, y) and the margin. */
+static double highest_over(const double e[3], double x, double y, double side)
 {
-    const double half = 0.5 + (double)CONSERVATIVE_MARGIN;
+    double half = side / 2 + (double)CONSERVATIVE_MARGIN;
     return e[0] * x + e[1] * y + e[2] + half * (fabs(e[0]) + fabs(e[1]));
 }
+
+static double highest(const double e[3], double x, double y) { return highest_over(e, x, y, 1); }
 
 static void mark_wild_texel(const struct geometry_map *m, const struct light_part *part, const struct wild_facet *f, uint32_t id,
                             double x, double y, struct work *w, size_t at)
@@ -272,8 +275,13 @@ static void mark_wild(const struct geometry_map *m, uint32_t id, float left, flo
     struct dvec3 c[3];
     for (unsigned k = 0; k < 3; k++)
         c[k] = light_part_corner(&m->mesh, part, id, k);
+    if (light_corners_miss(&m->mesh, c, left, top, left + MAP_TILE, top + MAP_TILE))
+        return;
     struct wild_facet f;
     set_wild(&f, &m->mesh, c);
+    for (int k = 0; k < 3; k++)
+        if (highest_over(f.edge[k], left + MAP_TILE / 2.0, top + MAP_TILE / 2.0, MAP_TILE) < 0)
+            return;
     for (uint32_t i = 0; i < TEXELS; i++)
         mark_wild_texel(m, part, &f, id, left + i % MAP_TILE + 0.5, top + i / MAP_TILE + 0.5, w, i);
 }

@@ -231,7 +231,10 @@ static void list_wild(const struct build *build, struct chunk *chunk, uint32_t i
     const struct mask_contour *m = build->map;
     const float box[4] = {-INFINITY, -INFINITY, INFINITY, INFINITY};
     uint32_t face = SCENE_NONE;
-    if (light_part_degenerate(m->mesh.scene, chunk->part, id))
+    struct dvec3 c[3];
+    for (unsigned k = 0; k < 3; k++)
+        c[k] = light_part_corner(&m->mesh, chunk->part, id, k);
+    if (light_corners_miss(&m->mesh, c, 0, 0, m->size, m->size) || light_part_degenerate(m->mesh.scene, chunk->part, id))
         return;
     for (uint32_t y = 0; y < m->size; y++)
         for (uint32_t word = 0; word < m->words; word++)

@@ -47,7 +47,7 @@ struct shadow_params {
 struct shadow_fit {
     unsigned map_count;                /* 0: no casters */
     struct view maps[SHADOW_MAPS_MAX]; /* square: width = height = the size parameter */
-    double fov_deg[SHADOW_MAPS_MAX];   /* widest full angle of the map; 0 for a directional light */
+    double fov_deg[SHADOW_MAPS_MAX];   /* widest full angle of the map; 0 for an orthographic one */
     const uint32_t *casters;           /* instances that cast, ascending; valid during the call */
     size_t caster_count;
 };
