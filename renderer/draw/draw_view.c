@@ -145,8 +145,7 @@ static bool draw_bucket(const struct draw_view *v, const struct draw_scene *d, e
     glFrontFace(GL_CW);
     glCullFace(bucket & BUCKET_CULL_FRONT ? GL_FRONT : GL_BACK);
     (bucket & (BUCKET_CULL_FRONT | BUCKET_CULL_BACK) ? glEnable : glDisable)(GL_CULL_FACE);
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, (const char *)0 + first * sizeof(struct command), (GLsizei)count,
-                                0);
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, (const void *)(first * sizeof(struct command)), (GLsizei)count, 0);
     return true;
 }
 

@@ -101,6 +101,8 @@ static inline lanes4 load4(const float v[4])
     return out;
 }
 
+static inline lanes4 next_corner(lanes4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 2); }
+
 static inline lanes4 absolute4(lanes4 v) { return (lanes4)((lanes4_int)v & 0x7fffffff); }
 
 /* The four half-planes side by side: lanes 0 to 2 the edges, lane 3 what lies behind the face's plane, as seen from the light, by more than
@@ -108,9 +110,8 @@ static inline lanes4 absolute4(lanes4 v) { return (lanes4)((lanes4_int)v & 0x7ff
 static uint32_t face_shadow(const struct mask_table *t, const struct mask_map *map, const struct mask_facet *f,
                             const struct mask_face *face)
 {
-    const lanes4_int next = {1, 2, 0, 2};
     lanes4 ux = load4(face->x), uy = load4(face->y), uz = load4(face->z);
-    lanes4 ex = __builtin_shuffle(ux, next) - ux, ey = __builtin_shuffle(uy, next) - uy, ez = __builtin_shuffle(uz, next) - uz;
+    lanes4 ex = next_corner(ux) - ux, ey = next_corner(uy) - uy, ez = next_corner(uz) - uz;
     lanes4 mx, my, mz;
     if (map->orthographic) {
         mx = ey;
