@@ -2,12 +2,11 @@
  * the shaders would run as well. */
 #include "exact/exact_shadows.h"
 
-#include <epoxy/gl.h>
 #include <string.h>
 
 #include "base/error.h"
-#include "gl/context.h"
 #include "passes/gbuffer.h"
+#include "shadow/pixel_pass.h"
 #include "shadow/shared_params.h"
 
 enum { PARAM_SAMPLES };
@@ -39,18 +38,6 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
     return exact_shadows_set_light(s->shadows, in->light, in->pool, err);
 }
 
-/* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */
-static void upload(const struct shadow_input *in, const float *visibility)
-{
-    GLint texture, layer;
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
-                                          &texture);
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
-                                          &layer);
-    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
-                        visibility);
-}
-
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct state *s = state;
@@ -66,8 +53,7 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
     }
     if (!visibility)
         return false;
-    upload(in, visibility);
-    return gl_check(in->gl, err);
+    return pixel_upload(in, visibility, err);
 }
 
 static bool read_masks(void *state, const struct shadow_input *in, uint32_t *receivers, uint32_t *lit, struct error *err)

@@ -11,6 +11,7 @@
 #include "gl/context.h"
 #include "passes/gbuffer.h"
 #include "scene/pixel.h"
+#include "shadow/pixel_pass.h"
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -79,20 +80,9 @@ struct resolve_job {
     struct placed_map maps[SHADOW_MAPS_MAX];
     unsigned map_count;
     uint32_t width, height;
-    /* The ray through the centre of pixel (0, 0), and its steps; relative. */
-    float origin[3], origin_dx[3], origin_dy[3], direction[3], direction_dx[3], direction_dy[3];
-    /* The light. */
-    enum light_kind kind;
-    float light[3]; /* position, relative; or the direction against the light's */
-    float axis[3], cosine, range2;
+    struct pixel_rays rays;
+    struct pixel_light light;
 };
-
-static void put(float out[3], struct dvec3 v)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-}
 
 static struct placed_map place_map(const struct geometry_map *m, struct dvec3 camera_eye)
 {
@@ -106,34 +96,10 @@ static struct placed_map place_map(const struct geometry_map *m, struct dvec3 ca
                            .far = (float)v->far,
                            .orthographic = v->orthographic};
     for (int i = 0; i < 3; i++) {
-        put(p.row[i], axes[i]);
+        pixel_put(p.row[i], axes[i]);
         p.row[i][3] = (float)dvec3_dot(axes[i], dvec3_sub(camera_eye, v->eye));
     }
     return p;
-}
-
-static void aim(struct resolve_job *job, const struct view *view)
-{
-    struct dvec3 o, d, ox, dx, oy, dy;
-    double w = 1.0 / view->width, h = 1.0 / view->height;
-    view_ray(view, 0.5, 0.5, &o, &d);
-    view_ray(view, 0.5 + view->width, 0.5, &ox, &dx);
-    view_ray(view, 0.5, 0.5 + view->height, &oy, &dy);
-    put(job->origin, dvec3_sub(o, view->eye));
-    put(job->origin_dx, dvec3_scale(dvec3_sub(ox, o), w));
-    put(job->origin_dy, dvec3_scale(dvec3_sub(oy, o), h));
-    put(job->direction, d);
-    put(job->direction_dx, dvec3_scale(dvec3_sub(dx, d), w));
-    put(job->direction_dy, dvec3_scale(dvec3_sub(dy, d), h));
-}
-
-static void set_light(struct resolve_job *job, const struct light *light, struct dvec3 eye)
-{
-    job->kind = light->kind;
-    put(job->light, light->kind == LIGHT_DIRECTIONAL ? dvec3_neg(light->direction) : dvec3_sub(light->position, eye));
-    put(job->axis, light->direction);
-    job->cosine = (float)cos(light->outer);
-    job->range2 = light->kind == LIGHT_DIRECTIONAL || light->range == 0 ? INFINITY : (float)(light->range * light->range);
 }
 
 /* Receivers of a run of pixels, a member at a time. */
@@ -149,22 +115,22 @@ INLINE void find_receivers(const struct resolve_job *job, uint32_t x0, uint32_t 
     for (uint32_t i = 0; i < count; i++) {
         float fx = (float)(x0 + i), fy = (float)y, depth = surface[i].depth, p[3], v[3];
         for (int k = 0; k < 3; k++)
-            p[k] = job->origin[k] + fx * job->origin_dx[k] + fy * job->origin_dy[k] +
-                   depth * (job->direction[k] + fx * job->direction_dx[k] + fy * job->direction_dy[k]);
+            p[k] = job->rays.origin[k] + fx * job->rays.origin_dx[k] + fy * job->rays.origin_dy[k] +
+                   depth * (job->rays.direction[k] + fx * job->rays.direction_dx[k] + fy * job->rays.direction_dy[k]);
         for (int k = 0; k < 3; k++)
-            v[k] = job->kind == LIGHT_DIRECTIONAL ? job->light[k] : job->light[k] - p[k];
+            v[k] = job->light.kind == LIGHT_DIRECTIONAL ? job->light.light[k] : job->light.light[k] - p[k];
         float a = (float)(int16_t)(surface[i].geometric & 0xffff) / 32767,
               b = (float)((int32_t)surface[i].geometric >> 16) / 32767;
         float c = 1 - fabsf(a) - fabsf(b), t = c < 0 ? -c : 0;
         a += a >= 0 ? -t : t;
         b += b >= 0 ? -t : t;
         float facing = a * v[0] + b * v[1] + c * v[2], d2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        float along = -(v[0] * job->axis[0] + v[1] * job->axis[1] + v[2] * job->axis[2]);
-        bool spot = job->kind != LIGHT_SPOT || along >= job->cosine * sqrtf(d2);
+        float along = -(v[0] * job->light.axis[0] + v[1] * job->light.axis[1] + v[2] * job->light.axis[2]);
+        bool spot = job->light.kind != LIGHT_SPOT || along >= job->light.cosine * sqrtf(d2);
         run->x[i] = p[0];
         run->y[i] = p[1];
         run->z[i] = p[2];
-        run->receives[i] = (depth > 0) & (facing > 0) & (d2 <= job->range2) & spot;
+        run->receives[i] = (depth > 0) & (facing > 0) & (d2 <= job->light.range2) & spot;
     }
 }
 
@@ -250,18 +216,6 @@ static void resolve_rows(void *context, size_t index, unsigned worker)
     resolve_rows_inline(context, index);
 }
 
-/* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */
-static void upload(const struct shadow_input *in, const float *visibility)
-{
-    GLint texture, layer;
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
-                                          &texture);
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
-                                          &layer);
-    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
-                        visibility);
-}
-
 static bool out_of_memory(struct error *err)
 {
     return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture's visibility");
@@ -310,9 +264,8 @@ bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *i
         return false;
     for (unsigned i = 0; i < g->count; i++)
         job.maps[i] = place_map(&g->maps[i], in->view->eye);
-    aim(&job, in->view);
-    set_light(&job, in->light, in->view->eye);
+    job.rays = pixel_rays_of(in->view);
+    job.light = pixel_light_of(in->light, in->view->eye);
     job_pool_for(in->pool, (job.height + ROWS - 1) / ROWS, resolve_rows, &job);
-    upload(in, g->visibility);
-    return gl_check(in->gl, err);
+    return pixel_upload(in, g->visibility, err);
 }

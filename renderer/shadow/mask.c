@@ -16,6 +16,7 @@
 #include "scene/pixel.h"
 #include "shadow/light_maps.h"
 #include "shadow/mask_facet.h"
+#include "shadow/pixel_pass.h"
 #include "shadow/shared_params.h"
 
 enum { PARAM_BIAS = SHADOW_PARAM_FIT + 1, PARAM_SLOPE };
@@ -51,11 +52,9 @@ struct resolve_job {
     const struct pixel *surfaces;
     uint32_t width, height;
     bool orthographic; /* the camera */
-    /* The ray through the centre of pixel (0, 0), and its steps; relative to the camera's eye. */
-    float origin[3], origin_dx[3], origin_dy[3], direction[3], direction_dx[3], direction_dy[3];
-    enum light_kind kind;
-    float light[3]; /* position, relative; or the direction against the light's */
-    float axis[3], cosine, range2, bias, slope;
+    struct pixel_rays rays;
+    struct pixel_light light;
+    float bias, slope;
     struct mask_counts *counts; /* a worker */
 };
 
@@ -99,13 +98,6 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
     return s->count == 0 || read_depths(s, in, err);
 }
 
-static void put(float out[3], struct dvec3 v)
-{
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-}
-
 static struct mask_map place_map(const struct mask *s, unsigned i, struct dvec3 camera_eye)
 {
     const struct mask_contour *c = &s->contours[i];
@@ -122,35 +114,10 @@ static struct mask_map place_map(const struct mask *s, unsigned i, struct dvec3 
                          .texel = (float)fmax(1 / fabs(c->mesh.scale_x), 1 / fabs(c->mesh.scale_y)),
                          .orthographic = v->orthographic};
     for (int k = 0; k < 3; k++) {
-        put(m.row[k], axes[k]);
+        pixel_put(m.row[k], axes[k]);
         m.row[k][3] = (float)dvec3_dot(axes[k], dvec3_sub(camera_eye, v->eye));
     }
     return m;
-}
-
-static void aim(struct resolve_job *job, const struct view *view)
-{
-    struct dvec3 o, d, ox, dx, oy, dy;
-    double w = 1.0 / view->width, h = 1.0 / view->height;
-    view_ray(view, 0.5, 0.5, &o, &d);
-    view_ray(view, 0.5 + view->width, 0.5, &ox, &dx);
-    view_ray(view, 0.5, 0.5 + view->height, &oy, &dy);
-    put(job->origin, dvec3_sub(o, view->eye));
-    put(job->origin_dx, dvec3_scale(dvec3_sub(ox, o), w));
-    put(job->origin_dy, dvec3_scale(dvec3_sub(oy, o), h));
-    put(job->direction, d);
-    put(job->direction_dx, dvec3_scale(dvec3_sub(dx, d), w));
-    put(job->direction_dy, dvec3_scale(dvec3_sub(dy, d), h));
-    job->orthographic = view->orthographic;
-}
-
-static void set_light(struct resolve_job *job, const struct light *light, struct dvec3 eye)
-{
-    job->kind = light->kind;
-    put(job->light, light->kind == LIGHT_DIRECTIONAL ? dvec3_neg(light->direction) : dvec3_sub(light->position, eye));
-    put(job->axis, light->direction);
-    job->cosine = (float)cos(light->outer);
-    job->range2 = light->kind == LIGHT_DIRECTIONAL || light->range == 0 ? INFINITY : (float)(light->range * light->range);
 }
 
 static inline float dot3(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -171,18 +138,19 @@ static bool find_receiver(const struct resolve_job *job, uint32_t x, uint32_t y,
     if (!(r->depth > 0))
         return false;
     for (int k = 0; k < 3; k++) {
-        r->direction[k] = job->direction[k] + fx * job->direction_dx[k] + fy * job->direction_dy[k];
-        r->point[k] = job->origin[k] + fx * job->origin_dx[k] + fy * job->origin_dy[k] + r->depth * r->direction[k];
-        v[k] = job->kind == LIGHT_DIRECTIONAL ? job->light[k] : job->light[k] - r->point[k];
+        r->direction[k] = job->rays.direction[k] + fx * job->rays.direction_dx[k] + fy * job->rays.direction_dy[k];
+        r->point[k] =
+            job->rays.origin[k] + fx * job->rays.origin_dx[k] + fy * job->rays.origin_dy[k] + r->depth * r->direction[k];
+        v[k] = job->light.kind == LIGHT_DIRECTIONAL ? job->light.light[k] : job->light.light[k] - r->point[k];
     }
     pixel_geometric(surface, r->normal);
     float facing = dot3(r->normal, v), d2 = dot3(v, v), scale = 1 / sqrtf(d2);
-    if (!(facing > 0) || !(d2 <= job->range2))
+    if (!(facing > 0) || !(d2 <= job->light.range2))
         return false;
     for (int k = 0; k < 3; k++)
         r->to_light[k] = v[k] * scale;
     r->cosine = facing * scale;
-    return job->kind != LIGHT_SPOT || -dot3(r->to_light, job->axis) >= job->cosine;
+    return job->light.kind != LIGHT_SPOT || -dot3(r->to_light, job->light.axis) >= job->light.cosine;
 }
 
 static void turn(const struct mask_map *m, const float v[3], float out[3])
@@ -206,8 +174,8 @@ static void make_facet(const struct resolve_job *job, const struct mask_map *m, 
                        struct mask_facet *f)
 {
     float along = dot3(r->normal, r->direction), step[2][3], change[2];
-    const float *steps[2] = {job->orthographic ? job->origin_dx : job->direction_dx,
-                             job->orthographic ? job->origin_dy : job->direction_dy};
+    const float *steps[2] = {job->orthographic ? job->rays.origin_dx : job->rays.direction_dx,
+                             job->orthographic ? job->rays.origin_dy : job->rays.direction_dy};
     for (int i = 0; i < 2; i++) {
         change[i] = dot3(r->normal, steps[i]) / along;
         for (int k = 0; k < 3; k++)
@@ -287,18 +255,6 @@ static const struct pixel *read_surfaces(struct mask *s, const struct shadow_inp
     return gl_check(in->gl, err) ? s->surfaces : NULL;
 }
 
-/* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */
-static void upload(const struct shadow_input *in, const float *visibility)
-{
-    GLint texture, layer;
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
-                                          &texture);
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
-                                          &layer);
-    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
-                        visibility);
-}
-
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct mask *s = state;
@@ -319,8 +275,9 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
         return out_of_memory(err);
     for (unsigned i = 0; i < s->count; i++)
         job.maps[i] = place_map(s, i, in->view->eye);
-    aim(&job, in->view);
-    set_light(&job, in->light, in->view->eye);
+    job.orthographic = in->view->orthographic;
+    job.rays = pixel_rays_of(in->view);
+    job.light = pixel_light_of(in->light, in->view->eye);
     job_pool_for(in->pool, (job.height + ROWS - 1) / ROWS, resolve_rows, &job);
     s->counts = (struct mask_counts){0};
     for (unsigned i = 0; i < workers; i++) {
@@ -329,8 +286,7 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
         s->counts.faces += job.counts[i].faces;
     }
     free(job.counts);
-    upload(in, s->visibility);
-    return gl_check(in->gl, err);
+    return pixel_upload(in, s->visibility, err);
 }
 
 static bool read_masks(void *state, const struct shadow_input *in, uint32_t *receivers, uint32_t *lit, struct error *err)

@@ -1,14 +1,12 @@
 /* The ray-traced reference as one more producer of the visibility buffer (reference/reference.h), and plain Embree as the speed baseline. */
 #include "reference/reference.h"
 
-#include <epoxy/gl.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/error.h"
-#include "blocks.h"
-#include "gl/context.h"
 #include "passes/gbuffer.h"
+#include "shadow/pixel_pass.h"
 #include "shadow/shared_params.h"
 #include "trace/tracer.h"
 
@@ -94,18 +92,6 @@ static bool trace_samples(struct state *s, const struct shadow_input *in, bool e
     return true;
 }
 
-/* The framework bound a framebuffer on the visibility layer; its texture is what the values go to. */
-static void upload(const struct shadow_input *in, const float *visibility)
-{
-    GLint texture, layer;
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME,
-                                          &texture);
-    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
-                                          &layer);
-    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
-                        visibility);
-}
-
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct state *s = state;
@@ -113,8 +99,7 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
     bool many = in->params[PARAM_SAMPLES] == 1, exact = in->params[PARAM_TRACER] == TRACER_EXACT;
     if (!reserve(s, pixels, many, err) || !(many ? trace_samples(s, in, exact, pixels, err) : trace_point(s, in, exact, err)))
         return false;
-    upload(in, s->visibility);
-    return gl_check(in->gl, err);
+    return pixel_upload(in, s->visibility, err);
 }
 
 static bool read_masks(void *state, const struct shadow_input *in, uint32_t *receivers, uint32_t *lit, struct error *err)

@@ -94,9 +94,9 @@ enum shadow_flags {
     SHADOW_VIEW_DRIVEN = 2, /* prepare runs every frame, with view and gbuffer; state per view too */
     SHADOW_NO_SHADOWS = 4,  /* answers 1 for every receiver: full cover need not be dark */
     SHADOW_BINARY = 8,      /* values are 0 or 1 only */
-    SHADOW_USES_FIT = 32,   /* wants shadow_fit, and chooses the resolution itself: maps come as SHADOW_FIT_SIDE a side */
     SHADOW_EXACT = 16,      /* promises the reference's own answer: error test demands 0 */
-    SHADOW_BRIGHTENS = 32,  /* full cover may leave some light, below one half */
+    SHADOW_USES_FIT = 32,   /* wants shadow_fit, and chooses the resolution itself: maps come as SHADOW_FIT_SIDE a side */
+    SHADOW_BRIGHTENS = 64,  /* full cover may leave some light, below one half */
 };
 
 struct shadow_system {

@@ -1,0 +1,23 @@
+/* What systems share that decide pixels on the CPU, from what the camera pass left (scene/pixel.h): the pixels' rays and the light as
+ * shaders/receiver.glsl has them, in the same single precision, and the way of the values to the visibility buffer. */
+#pragma once
+
+#include "shadow/shadow.h"
+
+/* The ray through the centre of pixel (x, y), relative to the camera's eye: origin + x origin_dx + y origin_dy + depth (direction + ...). */
+struct pixel_rays {
+    float origin[3], origin_dx[3], origin_dy[3], direction[3], direction_dx[3], direction_dy[3];
+};
+
+struct pixel_light {
+    enum light_kind kind;
+    float light[3]; /* position relative to the camera's eye; or the direction against the light's */
+    float axis[3], cosine, range2;
+};
+
+struct pixel_rays pixel_rays_of(const struct view *view);
+struct pixel_light pixel_light_of(const struct light *light, struct dvec3 camera_eye);
+void pixel_put(float out[3], struct dvec3 v);
+
+/* `visibility`: one value a pixel of in->view, to the layer that the framework bound. */
+bool pixel_upload(const struct shadow_input *in, const float *visibility, struct error *err);
