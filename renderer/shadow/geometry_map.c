@@ -192,7 +192,8 @@ static bool place_entries(struct build *b, struct error *err)
         m->slot_room = 0;
         return false;
     }
-    memset(m->notes, 0, texels * sizeof *m->notes);
+    if (texels > 0)
+        memset(m->notes, 0, texels * sizeof *m->notes);
     return reserve((void **)&m->entries, &m->entry_room, total, sizeof *m->entries, err) &&
            reserve((void **)&m->wild, &m->wild_room, wild, sizeof *m->wild, err);
 }
