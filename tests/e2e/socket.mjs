@@ -53,12 +53,15 @@ const moved = await a.frames.next("moved frame");
 assert.deepEqual([moved.inputSeq, moved.width, moved.height], [2, 400, 200]);
 await a.frames.next("still frame");
 
-// Each algorithm renders.
+// Each algorithm renders; those that refine a still picture send more than its two frames.
 for (const [index, algorithm] of hello.algorithms.entries()) {
   await a.client.setView(view.view, { algorithm: algorithm.name, size: [64, 36], dpr: 1 });
-  assert.equal((await a.frames.next(`frame of ${algorithm.name}`)).algorithm, index);
-  await a.frames.next("still frame");
+  while ((await a.frames.next(`frame of ${algorithm.name}`)).algorithm !== index);
 }
+do {
+  a.frames.items.length = 0;
+  await sleep(1000);
+} while (a.frames.items.length);
 
 // Lights.
 const lights = await a.client.request("light.add", { view: view.view, light: { kind: "point", position: [0, 3, 0], intensity: 50 } });
