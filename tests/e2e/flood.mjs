@@ -92,7 +92,7 @@ const sampling = (async () => {
 })();
 const unread = await paced(other);
 await Promise.all([steering, sampling]);
-assert.equal(flooder.frames, framesBefore);
+assert.ok(flooder.frames <= framesBefore + 1, "no frame but one that node had begun to read");
 flooder.shown.items.length = 0;
 flooder.onFrame = () => rendered++;
 flooder.socket.resume();
