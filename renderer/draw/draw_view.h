@@ -25,9 +25,9 @@ bool draw_view_set_edges(struct draw_view *v, const struct draw_scene *scene, co
 void draw_view_finish(struct draw_view *v);
 
 enum draw_what {
-    DRAW_IDS,   /* the camera's: ids and depth; hides back faces of single-sided materials */
+    DRAW_IDS,       /* the camera's: ids and depth; hides back faces of single-sided materials */
     DRAW_DEPTH_IDS, /* as DRAW_DEPTH, and ids */
-    DRAW_DEPTH, /* a light's: depth alone; every triangle, whichever side it shows; nothing is cut off by the near plane */
+    DRAW_DEPTH,     /* a light's: depth alone; every triangle, whichever side it shows; nothing is cut off by the near plane */
 };
 
 /* Rasterizes `instances` (ascending; NULL: all) into the bound framebuffer, culling those outside the view. Depth is reversed: near / depth

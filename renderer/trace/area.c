@@ -79,8 +79,8 @@ static void pass_through_others(const struct RTCFilterFunctionNArguments *args)
     const struct area_query *q = (const struct area_query *)args->context;
     unsigned n = args->N;
     for (unsigned i = 0; i < n; i++)
-        if (args->valid[i] && !lies_between(q, hit_id(args->hit, HIT_GEOM_ID, n, i), hit_id(args->hit, HIT_PRIM_ID, n, i),
-                                            ray_id(args->ray, n, i)))
+        if (args->valid[i] &&
+            !lies_between(q, hit_id(args->hit, HIT_GEOM_ID, n, i), hit_id(args->hit, HIT_PRIM_ID, n, i), ray_id(args->ray, n, i)))
             args->valid[i] = 0;
 }
 

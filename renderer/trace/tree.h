@@ -35,7 +35,10 @@ static inline float ray_float(const struct RTCRayN *ray, enum ray_member member,
 {
     return ((const float *)ray)[(unsigned)member * n + i];
 }
-static inline unsigned ray_id(const struct RTCRayN *ray, unsigned n, unsigned i) { return ((const unsigned *)ray)[RAY_ID * n + i]; }
+static inline unsigned ray_id(const struct RTCRayN *ray, unsigned n, unsigned i)
+{
+    return ((const unsigned *)ray)[RAY_ID * n + i];
+}
 static inline float hit_float(const struct RTCHitN *hit, enum hit_member member, unsigned n, unsigned i)
 {
     return ((const float *)hit)[(unsigned)member * n + i];

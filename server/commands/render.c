@@ -284,9 +284,9 @@ static bool render_here(const struct render_options *o, const char *scene, struc
         if (o->progressive)
             good = render_progress(o, &stage, err);
         else
-            good = (o->common.difference ? write_difference(o, &stage, &frame_ms, err)
-                                         : write_picture(o, &stage, &frame_ms, err)) &&
-                   write_stats(o, &stage, frame_ms, err);
+            good =
+                (o->common.difference ? write_difference(o, &stage, &frame_ms, err) : write_picture(o, &stage, &frame_ms, err)) &&
+                write_stats(o, &stage, frame_ms, err);
     }
     stage_finish(&stage);
     return good;

@@ -29,21 +29,25 @@ uint32_t made_material(struct scene *scene, bool double_sided)
     m->normal_scale = m->occlusion_strength = 1;
     m->alpha_cutoff = 0.5f;
     m->double_sided = double_sided;
-    struct texture_use *uses[] = {&m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture, &m->occlusion_texture,
-                                  &m->emissive_texture};
+    struct texture_use *uses[] = {&m->base_color_texture, &m->metallic_roughness_texture, &m->normal_texture,
+                                  &m->occlusion_texture, &m->emissive_texture};
     for (size_t i = 0; i < sizeof uses / sizeof uses[0]; i++)
         *uses[i] = (struct texture_use){SCENE_NONE, 0, {{1, 0, 0}, {0, 1, 0}}};
     return (uint32_t)scene->material_count++;
 }
 
-uint32_t made_mesh(struct scene *scene, const float (*points)[3], const float (*uv)[2], uint32_t point_count, const uint32_t *indices,
-                   uint32_t index_count, uint32_t material)
+uint32_t made_mesh(struct scene *scene, const float (*points)[3], const float (*uv)[2], uint32_t point_count,
+                   const uint32_t *indices, uint32_t index_count, uint32_t material)
 {
     GROW(scene, meshes, mesh_count, 1);
     struct mesh *mesh = &scene->meshes[scene->mesh_count];
-    *mesh = (struct mesh){.first_vertex = (uint32_t)scene->vertex_count, .vertex_count = point_count,
-                          .first_index = (uint32_t)scene->index_count, .index_count = index_count,
-                          .first_texcoord = {SCENE_NONE, SCENE_NONE}, .first_color = SCENE_NONE, .material = material};
+    *mesh = (struct mesh){.first_vertex = (uint32_t)scene->vertex_count,
+                          .vertex_count = point_count,
+                          .first_index = (uint32_t)scene->index_count,
+                          .index_count = index_count,
+                          .first_texcoord = {SCENE_NONE, SCENE_NONE},
+                          .first_color = SCENE_NONE,
+                          .material = material};
     GROW(scene, positions, vertex_count, point_count);
     GROW(scene, normals, vertex_count, point_count);
     memcpy(scene->positions + scene->vertex_count, points, point_count * sizeof *points);
@@ -102,12 +106,23 @@ struct camera made_camera(struct dvec3 eye, struct dvec3 target, double yfov)
     struct dvec3 back = dvec3_normalize(dvec3_sub(eye, target));
     struct dvec3 up = fabs(back.y) > 0.99 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
     struct dvec3 right = dvec3_normalize(dvec3_cross(up, back));
-    return (struct camera){.eye = eye, .right = right, .up = dvec3_cross(back, right), .back = back, .yfov = yfov, .ymag = 1,
-                           .near = 0.01, .far = INFINITY};
+    return (struct camera){.eye = eye,
+                           .right = right,
+                           .up = dvec3_cross(back, right),
+                           .back = back,
+                           .yfov = yfov,
+                           .ymag = 1,
+                           .near = 0.01,
+                           .far = INFINITY};
 }
 
 struct light made_light(enum light_kind kind, struct dvec3 position, struct dvec3 towards)
 {
-    return (struct light){.kind = kind, .position = position, .direction = dvec3_normalize(dvec3_sub(towards, position)),
-                          .color = {1, 1, 1}, .intensity = 100, .inner = 0, .outer = M_PI / 4};
+    return (struct light){.kind = kind,
+                          .position = position,
+                          .direction = dvec3_normalize(dvec3_sub(towards, position)),
+                          .color = {1, 1, 1},
+                          .intensity = 100,
+                          .inner = 0,
+                          .outer = M_PI / 4};
 }

@@ -10,8 +10,8 @@ struct scene *made_scene(void);
 uint32_t made_material(struct scene *scene, bool double_sided);
 
 /* Triangles over `points`; returns the mesh's index. `uv` may be NULL. */
-uint32_t made_mesh(struct scene *scene, const float (*points)[3], const float (*uv)[2], uint32_t point_count, const uint32_t *indices,
-                   uint32_t index_count, uint32_t material);
+uint32_t made_mesh(struct scene *scene, const float (*points)[3], const float (*uv)[2], uint32_t point_count,
+                   const uint32_t *indices, uint32_t index_count, uint32_t material);
 
 void made_instance(struct scene *scene, uint32_t mesh, struct affine to_world);
 

@@ -218,8 +218,10 @@ static void radius_has_defaults(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(half_plane_casts_the_closed_form), cmocka_unit_test(one_ray_goes_to_the_centre),
-        cmocka_unit_test(a_floor_does_not_shadow_itself),   cmocka_unit_test(repeats_and_stops),
+        cmocka_unit_test(half_plane_casts_the_closed_form),
+        cmocka_unit_test(one_ray_goes_to_the_centre),
+        cmocka_unit_test(a_floor_does_not_shadow_itself),
+        cmocka_unit_test(repeats_and_stops),
         cmocka_unit_test(radius_has_defaults),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
