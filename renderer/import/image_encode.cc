@@ -6,6 +6,7 @@
 
 #include "import/bridge.hh"
 #include "import/failure.hh"
+#include "import/oiio_threads.hh"
 
 namespace
 {
@@ -62,8 +63,7 @@ OIIO::ImageSpec make_spec(const encoding &e)
 void encode(void *context)
 {
     encoding &e = *static_cast<encoding *>(context);
-    OIIO::attribute("threads", 1);
-    OIIO::attribute("exr_threads", 1);
+    gltf::keep_oiio_to_one_thread();
     std::vector<unsigned char> memory;
     OIIO::Filesystem::IOVecOutput sink(memory);
     const char *name = writers[e.format];

@@ -6,6 +6,7 @@
 #include "import/bridge.hh"
 #include "import/failure.hh"
 #include "import/image_size.hh"
+#include "import/oiio_threads.hh"
 
 namespace
 {
@@ -62,7 +63,7 @@ void decode(void *context)
     const char *name = reader_for(d->data, d->size);
     if (!name)
         fail("%s is no PNG, JPEG or WebP image", d->what);
-    OIIO::attribute("threads", 1);
+    gltf::keep_oiio_to_one_thread();
     uint64_t width = 0, height = 0;
     if (gltf::find_image_size({d->data, d->size}, &width, &height))
         check_size(d->what, width, height);

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <dirent.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -199,9 +200,48 @@ static void written_whole_or_not_at_all(void **state)
     rmdir(folder);
 }
 
+static void *encode_and_decode(void *context)
+{
+    pthread_barrier_t *start = context;
+    bool right = true;
+    pthread_barrier_wait(start);
+    for (int i = 0; i < 100; i++) {
+        uint8_t pixels[4 * W * H], *encoded = NULL;
+        size_t size = 0;
+        struct error err = {0};
+        struct image image = {0};
+        fill(pixels, true);
+        right = right && image_encode(IMAGE_PNG, pixels, W, H, 95, NULL, 0, &encoded, &size, &err) &&
+                image_decode(encoded, size, "picture", &image, &err) && memcmp(pixels, image.rgba, sizeof pixels) == 0;
+        free(image.rgba);
+        free(encoded);
+    }
+    return right ? context : NULL;
+}
+
+static void many_threads_at_once(void **state)
+{
+    (void)state;
+    enum { THREADS = 8 };
+    pthread_t threads[THREADS];
+    pthread_barrier_t start;
+    pthread_barrier_init(&start, NULL, THREADS);
+    for (int i = 0; i < THREADS; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, encode_and_decode, &start), 0);
+    int right = 0;
+    for (int i = 0; i < THREADS; i++) {
+        void *result = NULL;
+        pthread_join(threads[i], &result);
+        right += result != NULL;
+    }
+    pthread_barrier_destroy(&start);
+    assert_int_equal(right, THREADS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(many_threads_at_once), /* first: what it looks for is in how OpenImageIO starts */
         cmocka_unit_test(png_keeps_every_bit),
         cmocka_unit_test(jpeg_and_webp_come_near),
         cmocka_unit_test(quality_counts),
