@@ -47,9 +47,8 @@ bool comparison_trace(const struct stage *stage, const struct against *against, 
                       struct comparison *c, struct error *err);
 /* After that: the errors that lists of the `length` (1..ORACLE_LENGTH_MAX) most visible triangles a texel would have made, over the lights whose
  * system has lists; receivers 0 where there is none (reference/oracle.h). Any thread. */
-bool comparison_oracle(const struct stage *stage, const struct against *against, unsigned length,
-                       const struct reference_progress *progress, const struct comparison *c, struct metrics *out,
-                       struct error *err);
+bool comparison_oracle(const struct stage *stage, unsigned length, const struct reference_progress *progress,
+                       const struct comparison *c, struct metrics *out, struct error *err);
 /* Another system against the truth that `c` holds already: the stage's settings may differ from those of comparison_render() in system and
  * parameters only. Lists are taken against point alone. On the renderer's thread. */
 bool comparison_repeat(struct stage *stage, const struct against *against, struct comparison *c, struct error *err);

@@ -226,7 +226,7 @@ static bool add_oracle(const struct compare_options *o, const struct stage *stag
         return true;
     progress_init(&progress, "asking the oracle", o->common.quiet);
     const struct reference_progress report = {report_progress, &progress};
-    bool good = comparison_oracle(stage, &o->against, o->oracle, &report, c, &m, err);
+    bool good = comparison_oracle(stage, o->oracle, &report, c, &m, err);
     progress_finish(&progress);
     if (!good || m.receivers == 0)
         return good;

@@ -46,8 +46,9 @@ const rounded = (value) => JSON.parse(JSON.stringify(value, (_, x) => (typeof x 
 assert.deepEqual(Object.keys(compared.result).sort(), Object.keys(local).sort());
 for (const name of ["receivers", "misclassified", "rmse", "max_abs", "leaks", "acne", "boundary", "algorithm", "params", "against", "size"])
   assert.deepEqual(rounded(compared.result[name]), rounded(local[name]), name);
-assert.ok(a.progress.every((p) => p.id === "first"));
-assert.equal(a.progress[0].stage, "waiting");
+// What is told first depends on how soon the render thread takes it.
+const stages = ["waiting", "rendering", "comparing", "encoding"];
+assert.ok(a.progress.length > 0 && a.progress.every((p, i) => p.id === "first" && stages.indexOf(p.stage) >= (i ? stages.indexOf(a.progress[i - 1].stage) : 0)), JSON.stringify(a.progress));
 
 // A stream goes on while a comparison runs; both end well.
 const b = await session();
