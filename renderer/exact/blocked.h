@@ -95,15 +95,55 @@ static inline struct sample_ray group_ray(const struct group *g, unsigned sample
                : sample_ray(g->job->view, g->x + (double)view_samples32[sample][0], g->y + (double)view_samples32[sample][1]);
 }
 
+/* Where the pixel's part of the receiver's plane lies, for hole_error(): the largest sums of absolute components of P - a and of P - L, and
+ * P's own error. False where it is not known. */
+static inline bool pixel_distances(const struct group *g, struct dvec3 a, double *from_a, double *from_light, double *error)
+{
+    struct quad q;
+    const struct exact_apex *l = &g->job->to_light;
+    if (!quad_make(&q, g->job, g->receiver, g->x, g->y, 1))
+        return false;
+    *error = 4 * q.slack;
+    *from_a = lane_most(lane_abs(q.x - a.x) + lane_abs(q.y - a.y) + lane_abs(q.z - a.z)) + *error;
+    *from_light = l->infinite ? fabs(l->v.x) + fabs(l->v.y) + fabs(l->v.z)
+                              : lane_most(lane_abs(q.x - l->v.x) + lane_abs(q.y - l->v.y) + lane_abs(q.z - l->v.z)) + *error;
+    return true;
+}
+
+/* Of the samples of `inside`, all of which cross `o`: those where its mask is solid; the others but `unsure` are not shadowed by it. */
+static inline void mask_samples(struct group *g, const struct occluder *o, const struct pixel_lines *p, uint32_t inside,
+                                uint32_t *solid, uint32_t *unsure)
+{
+    const struct masked *m = masked_get(g->scratch, g->job, o);
+    const struct receiver *r = g->receiver;
+    double from_a, from_light, error;
+    *solid = 0;
+    *unsure = inside;
+    if (!m->map.mask || !pixel_distances(g, m->a, &from_a, &from_light, &error))
+        return;
+    lane4 off = (p->error + 0x1p-50 * (lane_abs(p->g) + lane_abs(p->gx) + lane_abs(p->gy))) * m->unscale;
+    /* G is m . (P - a) times this. */
+    double factor =
+        g->job->view->orthographic ? fabs(r->fixed) : fabs(r->v + g->x * r->vx + g->y * r->vy) + fabs(r->vx) + fabs(r->vy);
+    struct hole_lines lines = {p->g * m->unscale, p->gx * m->unscale, p->gy * m->unscale,
+                               2.4 * (off[0] + off[1] + off[2]) + 1.01 * factor * hole_error(m, from_a, from_light, error)};
+    hole_samples(g->scratch, &m->map, &lines, inside, solid, unsure);
+}
+
 /* Samples that neither single precision nor the mask's absence decides. */
 static inline void try_one_by_one(struct group *g, const struct occluder *o, const struct pixel_lines *p, uint32_t inside,
                                   uint32_t unsure, bool lines_count)
 {
     struct slow *slow = &g->scratch->slow;
     bool holes = g->job->triangles->flags[o->id] & TRIANGLE_HOLES;
-    uint32_t id = g->receiver->id;
+    uint32_t id = g->receiver->id, to_read = holes ? inside : 0;
+    if (holes && lines_count && inside) {
+        uint32_t solid;
+        mask_samples(g, o, p, inside, &solid, &to_read);
+        g->open &= ~solid;
+    }
     g->scratch->counts.undecided += (unsigned)__builtin_popcount(unsure);
-    for (uint32_t bits = unsure | (holes ? inside : 0); bits; bits &= bits - 1) {
+    for (uint32_t bits = unsure | to_read; bits; bits &= bits - 1) {
         unsigned i = (unsigned)__builtin_ctz(bits);
         struct sample_ray ray = group_ray(g, i);
         int sign = inside >> i & 1 ? 1

@@ -105,6 +105,8 @@ static void scratch_begin(struct tile_scratch *s, const struct tile_job *job)
     }
     for (int i = 0; i < OCCLUDERS_KEPT; i++)
         s->occluders[i].id = SCENE_NONE;
+    for (int i = 0; i < MASKED_KEPT; i++)
+        s->masked[i].id = SCENE_NONE;
     for (int i = 0; i < RECEIVERS_KEPT; i++)
         s->seen[i].id = SCENE_NONE;
     s->slow = (struct slow){.triangles = job->triangles, .view = job->view, .light = job->light, .to_light = job->to_light};

@@ -1,6 +1,7 @@
 /* A tile's code: triangles as receivers and as occluders, and where a pixel's part of a receiver lies in the light's grid. */
 #pragma once
 
+#include "exact/hole_samples.h"
 #include "exact/simd.h"
 #include "exact/tile.h"
 #include "reference/filter.h"
@@ -42,6 +43,34 @@ static inline const struct occluder *occluder_get(struct tile_scratch *s, const 
     o->lines.fixed_size *= size;
     o->lines.v_size *= size;
     return o;
+}
+
+static inline void masked_make(struct masked *m, const struct tile_job *job, uint32_t id)
+{
+    struct dvec3 c[3];
+    triangle_corners(job->triangles, id, c);
+    m->id = id;
+    m->a = c[0];
+    m->e1 = fabs(c[1].x - c[0].x) + fabs(c[1].y - c[0].y) + fabs(c[1].z - c[0].z);
+    m->e2 = fabs(c[2].x - c[0].x) + fabs(c[2].y - c[0].y) + fabs(c[2].z - c[0].z);
+    hole_map_make(&m->map, &job->triangles->masks, job->triangles->scene, id);
+}
+
+/* `o`: an occluder with a mask. */
+static inline const struct masked *masked_get(struct tile_scratch *s, const struct tile_job *job, const struct occluder *o)
+{
+    struct masked *m = &s->masked[o->id % MASKED_KEPT];
+    if (m->id == o->id)
+        return m;
+    struct dvec3 c[3];
+    struct forms forms;
+    struct lines lines;
+    triangle_corners(job->triangles, o->id, c);
+    forms_make(&forms, &job->to_light, &c[0], &c[1], &c[2]);
+    lines_make(&lines, &forms, &job->screen);
+    masked_make(m, job, o->id);
+    m->unscale = lines.fixed_size + lines.v_size + LINE_UNDERFLOW;
+    return m;
 }
 
 static inline void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)

@@ -7,7 +7,13 @@
 #include "exact/lines.h"
 #include "exact/slow.h"
 
-enum { TILE_PIXELS = TILE_SIDE * TILE_SIDE, OCCLUDERS_KEPT = 1024, RECEIVERS_KEPT = 512, CANDIDATES_MAX = 12 };
+enum {
+    TILE_PIXELS = TILE_SIDE * TILE_SIDE,
+    OCCLUDERS_KEPT = 1024,
+    MASKED_KEPT = 1024,
+    RECEIVERS_KEPT = 512,
+    CANDIDATES_MAX = 12
+};
 
 struct tile_job {
     const struct triangles *triangles;
@@ -29,6 +35,15 @@ struct occluder {
     struct lines lines;
     uint32_t id;
     int side; /* the light's; 0: it shadows nothing */
+};
+
+/* A triangle with a mask, as an occluder or as what the camera sees. */
+struct masked {
+    uint32_t id;
+    struct hole_map map;
+    struct dvec3 a; /* first corner */
+    double e1, e2;  /* sums of the absolute components of b - a, c - a */
+    lane4 unscale;  /* what brings its lines back to the forms' own measure */
 };
 
 /* A triangle that is seen: its plane's form, turned so that F is negative, scaled to about 1. */
@@ -65,6 +80,8 @@ struct tile_scratch {
     uint32_t id[TILE_PIXELS][32];
     float key_error[TILE_PIXELS]; /* of any key of the pixel */
     struct occluder occluders[OCCLUDERS_KEPT];
+    struct masked masked[MASKED_KEPT]; /* of occluders */
+    struct masked shown_mask;
     struct receiver seen[RECEIVERS_KEPT];
     struct slow slow;
     struct tile_counts counts;

@@ -15,7 +15,8 @@ static size_t drawn_vertices(const struct scene *scene)
 
 size_t triangles_bytes(const struct scene *scene)
 {
-    return drawn_vertices(scene) * sizeof(struct dvec3) + scene->drawn_triangle_count * (3 * sizeof(uint32_t) + 1);
+    return drawn_vertices(scene) * sizeof(struct dvec3) + scene->drawn_triangle_count * (3 * sizeof(uint32_t) + 1) +
+           hole_masks_bytes(scene);
 }
 
 static bool counts(struct dvec3 p)
@@ -63,7 +64,7 @@ bool triangles_init(struct triangles *t, const struct scene *scene)
     t->vertices = malloc((t->vertex_count + 1) * sizeof *t->vertices);
     t->corners = malloc(((size_t)t->count + 1) * sizeof *t->corners);
     t->flags = malloc((size_t)t->count + 1);
-    if (!t->vertices || !t->corners || !t->flags)
+    if (!t->vertices || !t->corners || !t->flags || !hole_masks_init(&t->masks, scene))
         return false;
     size_t first = 0;
     for (size_t i = 0; i < scene->instance_count; i++) {
@@ -78,5 +79,6 @@ void triangles_finish(struct triangles *t)
     free(t->vertices);
     free(t->corners);
     free(t->flags);
+    hole_masks_finish(&t->masks);
     memset(t, 0, sizeof *t);
 }

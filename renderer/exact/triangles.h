@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "exact/holes.h"
 #include "scene/scene.h"
 
 enum triangle_flags {
@@ -22,6 +23,7 @@ struct triangles {
     uint32_t (*corners)[3]; /* indices into vertices */
     uint8_t *flags;         /* enum triangle_flags */
     struct dbox bounds;     /* of all that are not ignored */
+    struct hole_masks masks;
 };
 
 /* False when memory is out; triangles_finish() in any case. `scene` must outlive it. */

@@ -25,8 +25,15 @@ static inline bool between_planes(const struct view *v, const struct dvec3 c[3])
     return true;
 }
 
+/* For show_solid(). */
+static inline void shown_mask_make(struct masked *m, const struct tile_job *job, const struct lines *l, uint32_t id)
+{
+    masked_make(m, job, id);
+    m->unscale = l->v_size + LINE_UNDERFLOW;
+}
+
 /* False when the camera certainly does not see it. */
-static inline bool shown_make(struct shown *t, const struct tile_job *job, uint32_t id)
+static inline bool shown_make(struct shown *t, const struct tile_job *job, struct masked *mask, uint32_t id)
 {
     struct dvec3 c[3];
     struct forms forms;
@@ -54,6 +61,8 @@ static inline bool shown_make(struct shown *t, const struct tile_job *job, uint3
     t->v[3] = 1, t->vx[3] = t->vy[3] = 0, t->error[3] = 0;
     t->key = l.v[3] * along, t->key_x = l.vx[3] * along, t->key_y = l.vy[3] * along;
     /* 4 fixed_error < |fixed|, so the relative error of 1 / fixed is less than 4/3 of fixed_error / |fixed|. */
+    if (t->holes)
+        shown_mask_make(mask, job, &l, id);
     t->key_error = 2 * (LINE_ROUNDING * l.v_size[3] + l.v_size[3] * fixed_error / fabs(fixed)) / fabs(fixed);
     return true;
 }
@@ -92,6 +101,33 @@ static inline bool keys_between(const struct view *v, double low, double high)
 {
     double nearest = v->orthographic ? -v->near : 1 / v->near, farthest = v->orthographic ? -v->far : 1 / v->far;
     return low > farthest + 1e-12 * fabs(farthest) && high < nearest - 1e-12 * fabs(nearest);
+}
+
+/* Gives the triangle those samples of `won` where its mask is solid; returns those that must be asked one by one. */
+static inline uint32_t show_solid(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
+                                  const struct pixel_lines *p, const struct contest *c)
+{
+    const struct masked *m = &s->shown_mask;
+    const struct screen *screen = &job->screen;
+    const struct dvec3 *a = &m->a, *o = &job->view->eye;
+    uint32_t solid, unsure;
+    if (!m->map.mask)
+        return c->won;
+    double from_a = job->view->orthographic ? 3 * screen->size + fabs(a->x) + fabs(a->y) + fabs(a->z)
+                                            : fabs(a->x - o->x) + fabs(a->y - o->y) + fabs(a->z - o->z);
+    lane4 off = (p->error + 0x1p-50 * (lane_abs(p->g) + lane_abs(p->gx) + lane_abs(p->gy))) * m->unscale;
+    /* The direction's components are at most screen.size, or 1. */
+    struct hole_lines lines = {p->g * m->unscale, p->gx * m->unscale, p->gy * m->unscale,
+                               2.4 * (off[0] + off[1] + off[2]) + hole_error(m, from_a, 3 * screen->size + 3, 0)};
+    hole_samples(s, &m->map, &lines, c->won, &solid, &unsure);
+    for (int i = 0; i < 32; i += WIDTH) {
+        unsigned take = solid >> i & (unsigned)((1ull << WIDTH) - 1);
+        wide_put(s->key[pixel] + i, wide_load(c->keys + i), take);
+        wide_put_id(s->id[pixel] + i, t->id, take);
+    }
+    if (solid && !(c->error <= s->key_error[pixel]))
+        s->key_error[pixel] = c->error;
+    return unsure;
 }
 
 static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
@@ -134,12 +170,14 @@ static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *
     }
     if (plain && (nearer & sure.inside))
         s->key_error[pixel] = error;
-    uint32_t slowly = (unsure & ~farther) | (sure.inside & ~farther & (plain ? ~nearer : ~0u));
-    if (!slowly)
-        return;
     contest.crossed = sure.inside;
     contest.won = between ? sure.inside & nearer : 0;
     contest.error = error;
+    uint32_t slowly = (unsure & ~farther) | (sure.inside & ~farther & (plain ? ~nearer : ~0u));
+    if (t->holes && contest.won)
+        slowly = (slowly & ~contest.won) | show_solid(s, job, t, pixel, &p, &contest);
+    if (!slowly)
+        return;
     show_slowly(s, job, t, pixel, x, y, slowly, &contest);
 }
 
@@ -164,7 +202,7 @@ static inline void show(struct tile_scratch *s, const struct tile_job *job, uint
         pixel_span(box_min(box_min(a[0], b[0]), c[0]), box_max(box_max(a[0], b[0]), c[0]), x0, width, &left, &right);
         pixel_span(box_min(box_min(a[1], b[1]), c[1]), box_max(box_max(a[1], b[1]), c[1]), y0, height, &top, &bottom);
     }
-    if (left >= right || top >= bottom || !shown_make(&shown, job, id))
+    if (left >= right || top >= bottom || !shown_make(&shown, job, &s->shown_mask, id))
         return;
     for (uint32_t y = top; y < bottom; y++)
         for (uint32_t x = left; x < right; x++)

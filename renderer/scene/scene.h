@@ -177,5 +177,14 @@ uint32_t scene_instance_of(const struct scene *scene, uint32_t id);
  * nearest texel times `vertex_alpha`. The one rule for holes, in camera visibility and in shadows, in every system. */
 float material_alpha(const struct scene *scene, const struct material *material, const float uv[2], float vertex_alpha);
 
+/* Its last step, for a texture's alpha of 0 to 255. */
+static inline float material_texel_alpha(const struct material *m, float vertex_alpha, uint8_t texel)
+{
+    return m->base_color[3] * vertex_alpha * ((float)texel / 255.0f);
+}
+
+/* The texel in [0, size) that stands for any. */
+uint32_t texture_wrap(int64_t texel, uint32_t size, enum wrap_mode wrap);
+
 /* True when a triangle of this material may have holes (MASK or BLEND). */
 static inline bool material_has_holes(const struct material *m) { return m->alpha_mode != ALPHA_OPAQUE; }

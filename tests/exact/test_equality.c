@@ -224,9 +224,49 @@ static struct hard_scene soup_view(uint32_t seed, double scale)
                                .light = dvec3(0.2 * away * scale, away * scale, -0.3 * away * scale)};
 }
 
-static void check_soup(uint32_t seed, unsigned count, float scale, size_t memory)
+/* Three soups with masks, each wrapped another way, coordinates beyond the texture included. */
+static struct scene *masked_soup(uint32_t seed, unsigned count, float scale)
 {
-    struct scene *scene = soup(seed, count, scale);
+    enum { SIDE = 37 };
+    struct scene *scene = made_scene();
+    uint8_t solid[SIDE * SIDE];
+    float(*p)[3] = malloc(3 * count * sizeof *p), (*uv)[2] = malloc(3 * count * sizeof *uv);
+    uint32_t *indices = malloc(3 * count * sizeof *indices);
+    for (int wrap = WRAP_REPEAT; wrap <= WRAP_CLAMP_TO_EDGE; wrap++) {
+        uint32_t material = made_material(scene, true);
+        struct texture_use *use = &scene->materials[material].base_color_texture;
+        for (int i = 0; i < SIDE * SIDE; i++)
+            solid[i] = random_bits(&seed) % 3 != 0;
+        made_mask(scene, material, SIDE, solid);
+        use->transform[0][1] = 0.5f * (float)wrap, use->transform[1][2] = 0.3f;
+        scene->textures[use->texture].wrap_s = (enum wrap_mode)wrap;
+        scene->textures[use->texture].wrap_t = (enum wrap_mode)((wrap + 1) % 3);
+        for (unsigned t = 0; t < count; t++) {
+            float spread = t % 5 == 0 ? 1e-6f : t % 5 == 1 ? 40 : 0.7f, thin = t % 6 == 0 ? 1e-5f : 1;
+            for (int i = 0; i < 3; i++) {
+                float center = random_coordinate(&seed), along = 0.5f * random_coordinate(&seed);
+                p[3 * t][i] = center * scale;
+                p[3 * t + 1][i] = (center + along) * scale;
+                p[3 * t + 2][i] = (center + (thin < 1 ? along * 0.5f : 0) + 0.5f * random_coordinate(&seed) * thin) * scale;
+                for (int k = 0; k < 2; k++)
+                    uv[3 * t + (unsigned)i][k] = spread * random_coordinate(&seed);
+                indices[3 * t + (unsigned)i] = 3 * t + (unsigned)i;
+            }
+        }
+        made_instance(scene,
+                      made_mesh(scene, (const float(*)[3])p, (const float(*)[2])uv, 3 * count, indices, 3 * count, material),
+                      affine_identity());
+    }
+    free(indices);
+    free(uv);
+    free(p);
+    made_finish(scene);
+    return scene;
+}
+
+/* Takes the scene. */
+static void check_soup(struct scene *scene, uint32_t seed, float scale, size_t memory)
+{
     struct hard_scene at = soup_view(seed, (double)scale);
     struct pair p;
     pair_begin(&p, scene, scene, memory);
@@ -241,6 +281,7 @@ static void check_soup(uint32_t seed, unsigned count, float scale, size_t memory
         camera.far = 20 * (double)scale;
         set_light(&p, light);
         p.view = view_from_camera(&camera, WIDTH, HEIGHT);
+        exact_shadows_use_plain(p.exact, seed % 2);
         compare_points(&p);
         compare_samples(&p);
     }
@@ -254,15 +295,23 @@ static void soups_equal(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 8; seed++)
-        check_soup(seed, 60 + 40 * seed, 1, 0);
+        check_soup(soup(seed, 60 + 40 * seed, 1), seed, 1, 0);
+}
+
+static void masks_equal(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 1; seed <= 6; seed++)
+        check_soup(masked_soup(seed, 40, 1), seed, 1, 0);
+    check_soup(masked_soup(7, 40, 1e3f), 7, 1e3f, 0);
 }
 
 static void scales_equal(void **state)
 {
     (void)state;
-    check_soup(9, 90, 1e-4f, 0);
-    check_soup(10, 90, 1e4f, 0);
-    check_soup(11, 90, 1e-9f, 0);
+    check_soup(soup(9, 90, 1e-4f), 9, 1e-4f, 0);
+    check_soup(soup(10, 90, 1e4f), 10, 1e4f, 0);
+    check_soup(soup(11, 90, 1e-9f), 11, 1e-9f, 0);
 }
 
 /* Just enough memory: the grid's cells are large, the answer the same. Less: one clear sentence. */
@@ -322,6 +371,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hard_scenes_equal),
         cmocka_unit_test(soups_equal),
+        cmocka_unit_test(masks_equal),
         cmocka_unit_test(scales_equal),
         cmocka_unit_test(memory_changes_nothing),
         cmocka_unit_test(a_moved_triangle_is_found),
