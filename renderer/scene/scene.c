@@ -72,7 +72,7 @@ bool scene_finish(struct scene *scene, struct error *err)
     bool ok = false;
 
     move_to_scene_space(scene);
-    if (!number_triangles(scene, err))
+    if (!number_triangles(scene, err) || !scene_order_triangles(scene, err))
         goto done;
     shapes = calloc(scene->mesh_count + 1, sizeof *shapes);
     if (!shapes) {

@@ -159,7 +159,7 @@ struct scene *scene_load(const char *name, struct error *err);
 /* Accepts NULL and half-made scenes (every array is malloc'd or NULL). */
 void scene_destroy(struct scene *scene);
 
-/* Computes what is marked above, moves instances, cameras and lights from world into scene space. To be called once, by whoever fills a
+/* Computes what is marked above, reorders the triangles and vertices of dense meshes (scene/order.c), moves instances, cameras and lights from world into scene space. To be called once, by whoever fills a
  * scene. Refuses (ERROR_DATA) 2^32 - 1 or more drawn triangles. */
 bool scene_finish(struct scene *scene, struct error *err);
 
