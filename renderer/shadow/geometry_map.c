@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/job_pool.h"
-#include "shadow/conservative.h"
+#include "shadow/light_lanes.h"
 #include "shadow/map_tile.h"
 
 enum { CHUNKS = 16 }; /* parts that triangles are sorted in, whatever the threads: each has a count per tile */
@@ -14,8 +14,15 @@ enum { CHUNKS = 16 }; /* parts that triangles are sorted in, whatever the thread
 /* A tile has two bins: triangles that turn clockwise and those that turn the other way. Where a mesh is closed, one of them is hidden by the
  * other, which is rasterized first. */
 enum { BINS = 2 };
-#define HOME_NONE UINT32_MAX       /* touches no tile */
-#define HOME_MANY (UINT32_MAX - 1) /* several tiles, or wild */
+/* Where a triangle goes: a bin (at most 2 * 512 * 512 of them), and whether to the tiles right of it and below too. */
+#define HOME_RIGHT 0x40000000u
+#define HOME_BELOW 0x80000000u
+#define HOME_NONE  0x3fffffffu /* touches no tile */
+#define HOME_MANY  0x3ffffffeu /* more tiles, or wild */
+#define HOME_BIN   0x3fffffffu
+
+#define INLINE static inline __attribute__((always_inline))
+typedef int32_t lanes_int_loose __attribute__((vector_size(32), aligned(4), may_alias));
 
 struct build {
     struct geometry_map *map;
@@ -59,26 +66,7 @@ static bool over_tiles(const struct geometry_map *m, const struct light_triangle
 /* Mirrored coordinates, y down: what faces the light in a mesh of counter-clockwise faces turns clockwise in space and has a positive area. */
 static uint32_t bin_of(const struct geometry_map *m, float area, uint32_t x, uint32_t y)
 {
-    return (y * m->tiles + x) * BINS + (area < 0 ? 0 : 1);
-}
-
-/* Of a triangle within one tile, the bin; else HOME_MANY. Most are, and need no edges. */
-static uint32_t only_bin(const struct geometry_map *m, const struct light_triangle *t)
-{
-    float x[3], y[3];
-    for (int k = 0; k < 3; k++) {
-        x[k] = t->corner[k]->x;
-        y[k] = t->corner[k]->y;
-    }
-    const float reach = CONSERVATIVE_MARGIN, side = (float)m->size;
-    float left = CONSERVATIVE_LEAST(x) - reach, right = CONSERVATIVE_MOST(x) + reach;
-    float top = CONSERVATIVE_LEAST(y) - reach, bottom = CONSERVATIVE_MOST(y) + reach;
-    if (!(left >= 0 && top >= 0 && right < side && bottom < side))
-        return HOME_MANY;
-    uint32_t column = (uint32_t)left / MAP_TILE, row = (uint32_t)top / MAP_TILE;
-    if (column != (uint32_t)right / MAP_TILE || row != (uint32_t)bottom / MAP_TILE)
-        return HOME_MANY;
-    return bin_of(m, (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]), column, row);
+    return (y * m->tiles + x) * BINS + (area < 0 ? 0 : 1); /* as find_homes() has it */
 }
 
 static void put_entry(const struct build *b, uint32_t *counts, uint32_t bin, uint32_t id)
@@ -86,6 +74,19 @@ static void put_entry(const struct build *b, uint32_t *counts, uint32_t bin, uin
     if (b->filling)
         b->map->entries[counts[bin]] = id;
     counts[bin]++;
+}
+
+/* A home's two to four bins where it has flags. */
+static void put_home(const struct build *b, uint32_t *counts, uint32_t home, uint32_t id)
+{
+    uint32_t bin = home & HOME_BIN, below = b->map->tiles * BINS;
+    put_entry(b, counts, bin, id);
+    if (home & HOME_RIGHT)
+        put_entry(b, counts, bin + BINS, id);
+    if (home & HOME_BELOW)
+        put_entry(b, counts, bin + below, id);
+    if ((home & HOME_RIGHT) && (home & HOME_BELOW))
+        put_entry(b, counts, bin + below + BINS, id);
 }
 
 static void put_wild(const struct build *b, const struct light_part *part, uint32_t id, uint32_t *wild)
@@ -111,11 +112,6 @@ static uint32_t sort_triangle(const struct build *b, const struct light_part *pa
         put_wild(b, part, id, wild);
         return HOME_MANY;
     }
-    uint32_t bin = only_bin(m, &t);
-    if (bin != HOME_MANY) {
-        put_entry(b, counts, bin, id);
-        return bin;
-    }
     if (!over_tiles(m, &t, &over))
         return HOME_NONE;
     for (int32_t y = over.y0; y <= over.y1; y++)
@@ -125,20 +121,74 @@ static uint32_t sort_triangle(const struct build *b, const struct light_part *pa
     return HOME_MANY;
 }
 
+/* Homes of eight triangles on the map within two tiles by two, by their boxes: most are. Else HOME_MANY. */
+INLINE void find_homes(const struct geometry_map *m, const struct light_triangle t[CONSERVATIVE_LANES], uint32_t *homes)
+{
+    struct light_lanes at;
+    light_lanes_load(t, &at);
+    const float side = (float)m->size;
+    lanes_float left = LANES_LEAST(at.x) - CONSERVATIVE_MARGIN, right = LANES_MOST(at.x) + CONSERVATIVE_MARGIN;
+    lanes_float top = LANES_LEAST(at.y) - CONSERVATIVE_MARGIN, bottom = LANES_MOST(at.y) + CONSERVATIVE_MARGIN;
+    /* Sums, since a lane that is not a number is wild. */
+    lanes_float sum = at.x[0] + at.x[1] + at.x[2];
+    lanes_int few = (left >= 0) & (top >= 0) & (right < side) & (bottom < side) & (sum == sum);
+    lanes_int column = __builtin_convertvector(left, lanes_int) / (int32_t)MAP_TILE,
+              row = __builtin_convertvector(top, lanes_int) / (int32_t)MAP_TILE;
+    lanes_int more = __builtin_convertvector(right, lanes_int) / (int32_t)MAP_TILE - column,
+              lower = __builtin_convertvector(bottom, lanes_int) / (int32_t)MAP_TILE - row;
+    few &= (more <= 1) & (lower <= 1);
+    lanes_float area = (at.x[1] - at.x[0]) * (at.y[2] - at.y[0]) - (at.x[2] - at.x[0]) * (at.y[1] - at.y[0]);
+    lanes_int bin = (row * (int32_t)m->tiles + column) * BINS + ((area < 0) + 1);
+    bin |= (more << 30) | (lower << 31);
+    *(lanes_int_loose *)homes = (bin & few) | (~few & (int32_t)HOME_MANY);
+}
+
 /* Triangles [first, end) of a part, whose homes begin at `homes`. */
+INLINE void find_some_homes(const struct geometry_map *m, const struct light_part *part, size_t first, size_t end,
+                            uint32_t *homes)
+{
+    for (size_t i = first; i < end; i += CONSERVATIVE_LANES) {
+        struct light_triangle t[CONSERVATIVE_LANES];
+        uint32_t found[CONSERVATIVE_LANES];
+        size_t count = end - i < CONSERVATIVE_LANES ? end - i : CONSERVATIVE_LANES;
+        for (size_t k = 0; k < CONSERVATIVE_LANES; k++)
+            t[k] = light_part_triangle(part, part->first_triangle + (uint32_t)(i + (k < count ? k : 0)));
+        find_homes(m, t, found);
+        memcpy(homes + i, found, count * sizeof *found);
+    }
+}
+
+#ifdef __x86_64__
+__attribute__((target("avx2"))) static void find_some_homes_avx2(const struct geometry_map *m, const struct light_part *part,
+                                                                 size_t first, size_t end, uint32_t *homes)
+{
+    find_some_homes(m, part, first, end, homes);
+}
+#endif
+
+static void find_some_homes_any(const struct geometry_map *m, const struct light_part *part, size_t first, size_t end,
+                                uint32_t *homes)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) {
+        find_some_homes_avx2(m, part, first, end, homes);
+        return;
+    }
+#endif
+    find_some_homes(m, part, first, end, homes);
+}
+
 static void sort_some(const struct build *b, const struct light_part *part, size_t first, size_t end, uint32_t *homes,
                       uint32_t *counts, uint32_t *wild)
 {
+    if (!b->filling)
+        find_some_homes_any(b->map, part, first, end, homes);
     for (size_t i = first; i < end; i++) {
-        uint32_t id = part->first_triangle + (uint32_t)i;
-        if (!b->filling) {
-            light_part_prefetch_vertices(part, id + LIGHT_VERTICES_AHEAD);
+        uint32_t id = part->first_triangle + (uint32_t)i, home = homes[i];
+        if (home == HOME_MANY)
             homes[i] = sort_triangle(b, part, id, counts, wild);
-        } else if (homes[i] < HOME_MANY) {
-            put_entry(b, counts, homes[i], id);
-        } else if (homes[i] == HOME_MANY) {
-            sort_triangle(b, part, id, counts, wild);
-        }
+        else if (home != HOME_NONE)
+            put_home(b, counts, home, id);
     }
 }
 

@@ -3,212 +3,259 @@
 #include <math.h>
 #include <string.h>
 
-#include "trace/hole.h"
+#include "shadow/map_facets.h"
 
 #define INLINE static inline __attribute__((always_inline))
 
 enum { TEXELS = MAP_TILE * MAP_TILE };
 
-/* Ranks: below 0 over the centre, minus the nearness there; else the distance from the centre in steps, and within a step the nearer to the
- * light first: of two triangles that meet in an outline, the one that the light sees. The smaller is kept, of equals the first: a tile's triangles come in one order always. */
-#define RANK_STEPS 8.0f /* a texel */
-#define HOLE_AWAY  0.5f /* texels: covers the centre, with a hole there */
-#define WILD_AWAY  1.0f /* texels: triangles whose distance nobody works out */
+#define HOLE_AWAY 0.5f /* texels: covers the centre, with a hole there */
+#define WILD_AWAY 1.0f /* texels: triangles whose distance nobody works out */
 
+/* A row more than the tile has: two are worked on at a time. */
 struct work {
-    float nearest[TEXELS], rank[TEXELS];
-    uint32_t id[TEXELS];
+    float nearest[TEXELS + MAP_TILE], rank[TEXELS + MAP_TILE];
+    uint32_t id[TEXELS + MAP_TILE];
 } __attribute__((aligned(64)));
 
-/* A triangle over the tile. */
-struct facet {
-    struct conservative cover;
-    float n, nx, ny;   /* nearness at texel (x, y)'s centre: n + nx x + ny y */
-    float most, slack; /* the nearest corner's; by how much a texel may exceed its centre */
-    float inverse[3];  /* RANK_STEPS / length of each edge */
-    float behind;      /* in (0, 1): more for farther from the light */
+/* One of eight, and where it goes. */
+struct mark {
+    const struct geometry_map *map;
+    const struct map_facets *facets;
+    int lane;
     uint32_t id;
+    const struct light_part *holes; /* NULL: its material has none */
+    float left, top;
+    struct work *work;
 };
 
-INLINE bool set_facet(const struct geometry_map *m, struct facet *f, const struct light_triangle *t, uint32_t id, float left,
-                      float top)
-{
-    float x[3], y[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        x[k] = t->corner[k]->x - left;
-        y[k] = t->corner[k]->y - top;
-        n[k] = t->corner[k]->n;
-    }
-    if (!conservative_setup(&f->cover, x, y, MAP_TILE, MAP_TILE))
-        return false;
-    f->id = id;
-    f->most = CONSERVATIVE_MOST(n);
-    float scale = f->cover.turn / f->cover.area;
-    float u = n[1] - n[0], v = n[2] - n[0];
-    f->nx = (u * (y[2] - y[0]) - v * (y[1] - y[0])) * scale;
-    f->ny = (v * (x[1] - x[0]) - u * (x[2] - x[0])) * scale;
-    f->n = n[0] + f->nx * (0.5f - x[0]) + f->ny * (0.5f - y[0]);
-    /* What rounding makes of a slope is a fraction of it; the corners bound the rest. */
-    f->slack = (0.5f + CONSERVATIVE_MARGIN) * (fabsf(f->nx) + fabsf(f->ny));
-    f->slack += 0x1p-18f * (fabsf(f->nx) + fabsf(f->ny)) * (fabsf(x[0]) + fabsf(y[0]) + MAP_TILE);
-    if (!(f->slack < INFINITY)) { /* seen edge-on */
-        f->nx = f->ny = f->slack = 0;
-        f->n = f->most;
-    }
-    f->behind = m->mesh.nearest / (m->mesh.nearest + (n[0] + n[1] + n[2]) * (1.0f / 3));
-    for (int k = 0; k < 3; k++)
-        f->inverse[k] = RANK_STEPS / sqrtf(f->cover.a[k] * f->cover.a[k] + f->cover.b[k] * f->cover.b[k] + 1e-30f);
-    return true;
-}
-
-/* Macros, since vectors that functions return depend on the instruction set. */
-#define LANES_IF(mask, a, b) ((lanes_float)(((mask) & (lanes_int)(a)) | (~(mask) & (lanes_int)(b))))
-#define LANES_MAX(a, b)      LANES_IF((a) > (b), a, b)
-
-/* Takes lanes whose centre lies in a hole out of `covered`. */
-static void refuse_holes(const struct geometry_map *m, const struct light_part *part, uint32_t id, float left, float top,
-                         int32_t *covered)
+/* Takes texels whose centre lies in a hole out of `covered`; lane i's is (x[i], y[i]). */
+static void refuse_holes(const struct mark *k, const float *x, const float *y, int32_t *covered)
 {
     struct light_hit hit;
     for (int i = 0; i < CONSERVATIVE_LANES; i++)
-        if (covered[i] && !light_triangle_solid_hit(&m->mesh, part, id, left + (float)i + 0.5f, top + 0.5f, &hit))
+        if (covered[i] &&
+            !light_triangle_solid_hit(&k->map->mesh, k->holes, k->id, k->left + x[i] + 0.5f, k->top + y[i] + 0.5f, &hit))
             covered[i] = 0;
 }
 
-INLINE void mark_row(const struct facet *f, const struct geometry_map *m, const struct light_part *holes, float left, float top,
-                     int32_t x, int32_t y, struct work *w)
+/* Eight texels: where they are, which of them matter, what the work says of them. */
+struct texels {
+    lanes_float x, y;
+    lanes_int among;
+    lanes_float nearest, rank;
+    lanes_uint id;
+};
+
+INLINE void mark_texels(const struct mark *k, struct texels *t)
 {
-    const struct conservative *c = &f->cover;
-    lanes_float columns = LANES_COUNT + (float)x, edge[3];
-    for (int k = 0; k < 3; k++)
-        edge[k] = CONSERVATIVE_EDGE(c, k, columns, y);
-    lanes_int touched = CONSERVATIVE_TOUCHED(c, edge, columns);
-    lanes_int covered = (edge[0] >= 0) & (edge[1] >= 0) & (edge[2] >= 0);
-    lanes_float n = f->nx * columns + (f->ny * (float)y + f->n);
-    lanes_float away = -edge[0] * f->inverse[0], second = -edge[1] * f->inverse[1], third = -edge[2] * f->inverse[2];
-    away = LANES_MAX(away, second);
-    away = LANES_MAX(away, third);
-    if (holes) {
+    const struct map_facets *f = k->facets;
+    int lane = k->lane;
+    lanes_float edge[3], away = {};
+    lanes_int touched = t->among, covered = ~(lanes_int){};
+    for (int e = 0; e < 3; e++) {
+        edge[e] = f->a[e][lane] * t->x + (f->b[e][lane] * t->y + f->c[e][lane]);
+        touched &= edge[e] >= -f->reach[e][lane];
+        covered &= edge[e] >= 0;
+        lanes_float beyond = -edge[e] * f->inverse[e][lane];
+        away = e == 0 ? beyond : LANES_MAX(away, beyond);
+    }
+    if (k->holes) {
         lanes_int before = covered & touched;
         covered = before;
-        refuse_holes(m, holes, f->id, left + (float)x, top + (float)y, (int32_t *)&covered);
-        away = LANES_IF(before & ~covered, (lanes_float){} + HOLE_AWAY * RANK_STEPS, away);
+        refuse_holes(k, (const float *)&t->x, (const float *)&t->y, (int32_t *)&covered);
+        away = LANES_IF(before & ~covered, LANES_ALL(HOLE_AWAY * RANK_STEPS), away);
     }
-    away = __builtin_convertvector(__builtin_convertvector(away, lanes_int), lanes_float) + f->behind;
-    lanes_float near = n + f->slack, most = (lanes_float){} + f->most, rank = LANES_IF(covered, -n, away);
-    near = LANES_IF(near < most, near, most);
+    lanes_float n = f->nx[lane] * t->x + (f->ny[lane] * t->y + f->n[lane]);
+    lanes_float near = n + f->slack[lane], most = LANES_ALL(f->most[lane]);
+    away = __builtin_convertvector(__builtin_convertvector(away, lanes_int), lanes_float) + f->behind[lane];
+    lanes_float rank = LANES_IF(covered, -n, away);
+    near = LANES_MIN(near, most);
+    t->nearest = LANES_IF(touched & (near > t->nearest), near, t->nearest);
+    lanes_int better = touched & (rank < t->rank);
+    t->rank = LANES_IF(better, rank, t->rank);
+    t->id = (lanes_uint)LANES_IF(better, (lanes_float)((lanes_uint){} + k->id), (lanes_float)t->id);
+}
+
+/* Eight texels of row y from column x on, a multiple of eight. */
+INLINE void mark_row(const struct mark *k, int32_t x, int32_t y)
+{
+    const struct map_facets *f = k->facets;
+    lanes_float columns = LANES_COUNT + (float)x;
     size_t at = (size_t)y * MAP_TILE + (size_t)x;
-    lanes_float *nearest = (lanes_float *)&w->nearest[at], *ranks = (lanes_float *)&w->rank[at];
-    lanes_uint *ids = (lanes_uint *)&w->id[at];
-    *nearest = LANES_IF(touched & (near > *nearest), near, *nearest);
-    lanes_int better = touched & (rank < *ranks);
-    *ranks = LANES_IF(better, rank, *ranks);
-    *ids = (lanes_uint)LANES_IF(better, (lanes_float)((lanes_uint){} + f->id), (lanes_float)*ids);
+    lanes_float *nearest = (lanes_float *)&k->work->nearest[at], *ranks = (lanes_float *)&k->work->rank[at];
+    lanes_uint *ids = (lanes_uint *)&k->work->id[at];
+    lanes_int among = (columns >= (float)f->x0[k->lane]) & (columns <= (float)f->x1[k->lane]);
+    struct texels t = {columns, LANES_ALL((float)y), among, *nearest, *ranks, *ids};
+    mark_texels(k, &t);
+    *nearest = t.nearest;
+    *ranks = t.rank;
+    *ids = t.id;
+}
+
+typedef float quarter_loose __attribute__((vector_size(16), aligned(4), may_alias));
+
+#define TWO_ROWS(array, at) LANES_OF(*(const quarter_loose *)&(array)[at], *(const quarter_loose *)&(array)[(at) + MAP_TILE])
+#define PUT_TWO_ROWS(array, at, value)                                                                   \
+    do {                                                                                                 \
+        *(quarter_loose *)&(array)[at] = __builtin_shufflevector(value, value, 0, 1, 2, 3);              \
+        *(quarter_loose *)&(array)[(at) + MAP_TILE] = __builtin_shufflevector(value, value, 4, 5, 6, 7); \
+    } while (0)
+#define TWO_ROWS_X ((lanes_float){0, 1, 2, 3, 0, 1, 2, 3})
+#define TWO_ROWS_Y ((lanes_float){0, 0, 0, 0, 1, 1, 1, 1})
+
+/* Where four columns begin that hold all of a narrow box. */
+INLINE int32_t four_from(int32_t x0) { return x0 < (int32_t)MAP_TILE - 4 ? x0 : (int32_t)MAP_TILE - 4; }
+
+/* A box at most four texels wide: four columns of two rows at a time. */
+INLINE void mark_narrow(const struct mark *k)
+{
+    const struct map_facets *f = k->facets;
+    struct work *w = k->work;
+    int32_t first = four_from(f->x0[k->lane]), bottom = f->y1[k->lane];
+    lanes_float x = TWO_ROWS_X + (float)first;
+    lanes_int within = (x >= (float)f->x0[k->lane]) & (x <= (float)f->x1[k->lane]);
+    for (int32_t row = f->y0[k->lane]; row <= bottom; row += 2) {
+        size_t at = (size_t)row * MAP_TILE + (size_t)first;
+        lanes_float y = TWO_ROWS_Y + (float)row;
+        lanes_float ids = TWO_ROWS(w->id, at);
+        struct texels t = {x, y, within & (y <= (float)bottom), TWO_ROWS(w->nearest, at), TWO_ROWS(w->rank, at), (lanes_uint)ids};
+        mark_texels(k, &t);
+        ids = (lanes_float)t.id;
+        PUT_TWO_ROWS(w->nearest, at, t.nearest);
+        PUT_TWO_ROWS(w->rank, at, t.rank);
+        PUT_TWO_ROWS(w->id, at, ids);
+    }
 }
 
 /* What of row y the edges leave, a little more than less: most of a long thin triangle's box is empty. */
 struct spans {
-    float at[3], step[3]; /* edge k crosses row y at at + step y */
+    float at[3], step[3]; /* edge e crosses row y at at + step y */
     bool left[3], right[3];
 };
 
-INLINE struct spans find_spans(const struct conservative *c)
+INLINE struct spans find_spans(const struct map_facets *f, int lane)
 {
     struct spans s;
-    for (int k = 0; k < 3; k++) {
-        float inverse = 1 / c->a[k];
-        s.at[k] = -(c->c[k] + c->reach[k]) * inverse;
-        s.step[k] = -c->b[k] * inverse;
+    for (int e = 0; e < 3; e++) {
+        float a = f->a[e][lane], inverse = 1 / a;
+        s.at[e] = -(f->c[e][lane] + f->reach[e][lane]) * inverse;
+        s.step[e] = -f->b[e][lane] * inverse;
         /* Steep enough that the crossing is sure to within a texel. */
-        s.left[k] = c->a[k] > 0 && fabsf(s.at[k]) < 1e5f && fabsf(s.step[k]) < 1e3f;
-        s.right[k] = c->a[k] < 0 && fabsf(s.at[k]) < 1e5f && fabsf(s.step[k]) < 1e3f;
+        s.left[e] = a > 0 && fabsf(s.at[e]) < 1e5f && fabsf(s.step[e]) < 1e3f;
+        s.right[e] = a < 0 && fabsf(s.at[e]) < 1e5f && fabsf(s.step[e]) < 1e3f;
     }
     return s;
 }
 
-INLINE void mark_facet(const struct facet *f, const struct geometry_map *m, const struct light_part *holes, float left, float top,
-                       struct work *w)
+INLINE void mark_wide(const struct mark *k)
 {
-    const struct conservative *c = &f->cover;
-    int32_t x0 = c->x0 & ~(CONSERVATIVE_LANES - 1);
-    if (c->x1 - x0 < CONSERVATIVE_LANES) {
-        for (int32_t y = c->y0; y <= c->y1; y++)
-            mark_row(f, m, holes, left, top, x0, y, w);
+    const struct map_facets *f = k->facets;
+    int32_t x0 = f->x0[k->lane], x1 = f->x1[k->lane], y0 = f->y0[k->lane], y1 = f->y1[k->lane];
+    int32_t first = x0 & ~(CONSERVATIVE_LANES - 1);
+    if (x1 - first < CONSERVATIVE_LANES) {
+        for (int32_t y = y0; y <= y1; y++)
+            mark_row(k, first, y);
         return;
     }
-    struct spans s = find_spans(c);
-    for (int32_t y = c->y0; y <= c->y1; y++) {
-        float from = (float)c->x0, to = (float)c->x1;
-        for (int k = 0; k < 3; k++) {
-            float cross = s.at[k] + s.step[k] * (float)y;
-            from = s.left[k] && cross - 1 > from ? cross - 1 : from;
-            to = s.right[k] && cross + 1 < to ? cross + 1 : to;
+    struct spans s = find_spans(f, k->lane);
+    for (int32_t y = y0; y <= y1; y++) {
+        float from = (float)x0, to = (float)x1;
+        for (int e = 0; e < 3; e++) {
+            float cross = s.at[e] + s.step[e] * (float)y;
+            from = s.left[e] && cross - 1 > from ? cross - 1 : from;
+            to = s.right[e] && cross + 1 < to ? cross + 1 : to;
         }
         if (!(from <= to))
             continue;
         for (int32_t x = (int32_t)from & ~(CONSERVATIVE_LANES - 1); x <= (int32_t)to; x += CONSERVATIVE_LANES)
-            mark_row(f, m, holes, left, top, x, y, w);
+            mark_row(k, x, y);
     }
-}
-
-/* Thin in projection: may have no area at all, and casts nothing then. */
-INLINE bool is_nothing(const struct geometry_map *m, const struct light_part *part, const struct facet *f)
-{
-    float longest = CONSERVATIVE_LEAST(f->inverse) * (1 / RANK_STEPS), area = f->cover.area;
-    return (area * longest * longest <= 1e-4f || area <= 1e-6f) && light_part_degenerate(m->mesh.scene, part, f->id);
 }
 
 /* Whether everything in the triangle's box is known to be nearer than its nearest corner: it would change nothing. Half of a closed mesh. */
-INLINE bool is_hidden(const struct light_triangle *t, float left, float top, const struct work *w)
+INLINE bool is_hidden(const struct map_facets *f, int lane, const struct work *w)
 {
-    float x[3], y[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        x[k] = t->corner[k]->x - left;
-        y[k] = t->corner[k]->y - top;
-        n[k] = t->corner[k]->n;
-    }
-    const float m = CONSERVATIVE_MARGIN, side = MAP_TILE - 1;
-    float x0 = CONSERVATIVE_LEAST(x) - m, x1 = CONSERVATIVE_MOST(x) + m, y0 = CONSERVATIVE_LEAST(y) - m,
-          y1 = CONSERVATIVE_MOST(y) + m;
-    int32_t column = x0 > 0 ? (int32_t)x0 : 0, end = x1 < side ? (int32_t)x1 : (int32_t)side;
-    int32_t row = y0 > 0 ? (int32_t)y0 : 0, bottom = y1 < side ? (int32_t)y1 : (int32_t)side;
-    if (end - (column & ~(CONSERVATIVE_LANES - 1)) >= CONSERVATIVE_LANES)
-        return false; /* not worth the look */
-    lanes_float most = (lanes_float){} + CONSERVATIVE_MOST(n);
+    int32_t x0 = f->x0[lane], x1 = f->x1[lane], row = f->y0[lane], bottom = f->y1[lane];
+    lanes_float most = LANES_ALL(-f->most[lane]), columns;
     lanes_int open = {};
-    int32_t first = column & ~(CONSERVATIVE_LANES - 1), any = 0;
-    lanes_float columns = LANES_COUNT + (float)first;
-    for (; row <= bottom; row++) {
-        const lanes_float *rank = (const lanes_float *)&w->rank[row * (int32_t)MAP_TILE + first];
-        open |= -*rank < most;
+    if (x1 - x0 < 4) {
+        int32_t first = four_from(x0);
+        columns = TWO_ROWS_X + (float)first;
+        for (; row < bottom; row += 2)
+            open |= TWO_ROWS(w->rank, row * (int32_t)MAP_TILE + first) > most;
+        if (row == bottom) {
+            lanes_quarter last = *(const quarter_loose *)&w->rank[row * (int32_t)MAP_TILE + first];
+            open |= LANES_OF(last, last) > most;
+        }
+    } else {
+        int32_t first = x0 & ~(CONSERVATIVE_LANES - 1);
+        if (x1 - first >= CONSERVATIVE_LANES)
+            return false; /* not worth the look */
+        columns = LANES_COUNT + (float)first;
+        for (; row <= bottom; row++)
+            open |= *(const lanes_float *)&w->rank[row * (int32_t)MAP_TILE + first] > most;
     }
-    open &= (columns >= (float)column) & (columns <= (float)end);
-    for (int k = 0; k < CONSERVATIVE_LANES; k++)
-        any |= open[k];
-    return !any;
+    open &= (columns >= (float)x0) & (columns <= (float)x1);
+    return !LANES_ANY(open);
+}
+
+/* Up to eight triangles of a tile; lanes beyond `count` repeat the first. */
+struct batch {
+    uint32_t id[CONSERVATIVE_LANES];
+    const struct light_part *part[CONSERVATIVE_LANES];
+    struct light_triangle triangle[CONSERVATIVE_LANES];
+    int count;
+};
+
+/* Numbers [first, first + 8) of the tile's, as far as there are. */
+static void take_batch(const struct geometry_map *m, const uint32_t *triangles, size_t first, size_t end, uint32_t *hint,
+                       struct batch *b)
+{
+    b->count = end - first < CONSERVATIVE_LANES ? (int)(end - first) : CONSERVATIVE_LANES;
+    for (int i = 0; i < CONSERVATIVE_LANES; i++) {
+        size_t at = first + (size_t)(i < b->count ? i : 0);
+        const struct light_part *part = light_mesh_part(&m->mesh, triangles[at], hint);
+        if (at + LIGHT_INDICES_AHEAD < end)
+            light_part_prefetch_indices(part, triangles[at + LIGHT_INDICES_AHEAD]);
+        if (at + LIGHT_VERTICES_AHEAD < end)
+            light_part_prefetch_vertices(part, triangles[at + LIGHT_VERTICES_AHEAD]);
+        b->id[i] = triangles[at];
+        b->part[i] = part;
+        b->triangle[i] = light_part_triangle(part, triangles[at]);
+    }
 }
 
 INLINE void mark_triangles(const struct geometry_map *m, const uint32_t *triangles, size_t count, float left, float top,
                            struct work *w)
 {
     uint32_t hint = 0;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t id = triangles[i];
-        const struct light_part *part = light_mesh_part(&m->mesh, id, &hint);
-        if (i + LIGHT_INDICES_AHEAD < count)
-            light_part_prefetch_indices(part, triangles[i + LIGHT_INDICES_AHEAD]);
-        if (i + LIGHT_VERTICES_AHEAD < count)
-            light_part_prefetch_vertices(part, triangles[i + LIGHT_VERTICES_AHEAD]);
-        struct light_triangle t = light_part_triangle(part, id);
-        struct facet f;
-        if (is_hidden(&t, left, top, w))
+    for (size_t first = 0; first < count; first += CONSERVATIVE_LANES) {
+        struct batch batch;
+        struct map_facets f;
+        take_batch(m, triangles, first, count, &hint, &batch);
+        map_facets_box(&f, batch.triangle, left, top, MAP_TILE);
+        unsigned open = 0;
+        for (int i = 0; i < batch.count; i++)
+            open |= f.over[i] && !is_hidden(&f, i, w) ? 1u << i : 0;
+        if (!open)
             continue;
-        if (!set_facet(m, &f, &t, id, left, top) || is_nothing(m, part, &f))
-            continue;
-        if (part->holes)
-            mark_facet(&f, m, part, left, top, w);
-        else
-            mark_facet(&f, m, NULL, left, top, w);
+        map_facets_set(&f, m->mesh.nearest, MAP_TILE);
+        for (; open; open &= open - 1) {
+            int i = __builtin_ctz(open);
+            struct mark mark = {m, &f, i, batch.id[i], NULL, left, top, w};
+            /* Thin in projection: may have no area at all, and casts nothing then. */
+            if (f.thin[i] && light_part_degenerate(m->mesh.scene, batch.part[i], batch.id[i]))
+                continue;
+            if (batch.part[i]->holes) {
+                mark.holes = batch.part[i];
+                mark_wide(&mark);
+            } else if (f.x1[i] - f.x0[i] < 4) {
+                mark_narrow(&mark);
+            } else {
+                mark_wide(&mark);
+            }
+        }
     }
 }
 
@@ -291,7 +338,7 @@ INLINE void rasterize(const struct geometry_map *m, uint32_t tile_x, uint32_t ti
 {
     struct work w;
     float left = (float)(tile_x * MAP_TILE), top = (float)(tile_y * MAP_TILE);
-    for (int i = 0; i < TEXELS; i++) {
+    for (size_t i = 0; i < sizeof w.id / sizeof *w.id; i++) {
         w.nearest[i] = -INFINITY;
         w.rank[i] = INFINITY;
         w.id[i] = MAP_NONE;
