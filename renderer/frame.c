@@ -76,6 +76,8 @@ static struct shadow_input input_for(struct renderer *r, struct render_scene *s,
     in.viewer = settings->viewer;
     in.view = &r->gbuffer.view.view;
     in.trace_maps = traces_maps(s, settings);
+    in.resolve_on_cpu = settings->resolve_pass == RESOLVE_PASS_AUTO ? producer_resolves_on_cpu(&s->draw)
+                                                                    : settings->resolve_pass == RESOLVE_PASS_CPU;
     in.memory = settings->light_count ? settings->memory / settings->light_count : 0;
     return in;
 }

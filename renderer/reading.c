@@ -37,6 +37,7 @@ static struct shadow_input input_of(struct render_scene *s, unsigned light)
     in.params = state->params.value;
     in.view = &s->renderer->gbuffer.view.view;
     in.trace_maps = state->traced;
+    in.resolve_on_cpu = state->on_cpu;
     in.memory = state->memory;
     return in;
 }

@@ -19,6 +19,7 @@ struct renderer;
 struct render_scene;
 
 enum camera_pass { CAMERA_PASS_AUTO, CAMERA_PASS_RASTER, CAMERA_PASS_TRACED };
+enum resolve_pass { RESOLVE_PASS_AUTO, RESOLVE_PASS_GPU, RESOLVE_PASS_CPU };
 enum show { SHOW_SHADED, SHOW_VISIBILITY, SHOW_DEPTH, SHOW_NORMAL, SHOW_ID };
 enum tonemap { TONEMAP_ACES, TONEMAP_NONE };
 enum pixel_format {
@@ -65,7 +66,8 @@ struct render_settings {
     enum tonemap tonemap;
     unsigned aa; /* samples a pixel: 1, 4 or 16 */
     enum camera_pass camera_pass;
-    enum camera_pass map_pass; /* the same choice for depth maps from lights */
+    enum camera_pass map_pass;      /* the same choice for depth maps from lights */
+    enum resolve_pass resolve_pass; /* where systems that can do either compare pixels with depth maps */
     enum pixel_format format;
     uint32_t viewer;       /* whose picture: a light that moves takes along what was built for it, but only from its own viewer */
     size_t memory;         /* bytes that the lights' structures may take together; 0: no limit */

@@ -20,3 +20,6 @@ bool producer_traces_camera(const struct draw_scene *scene, size_t pixels)
 }
 
 bool producer_traces_map(const struct draw_scene *scene, size_t texels) { return many_triangles(scene, texels); }
+
+/* docs/performance.md: one tap costs a software rasterizer about what it costs here, more of them several times as much. */
+bool producer_resolves_on_cpu(const struct draw_scene *scene) { return scene->gl->caps.software; }

@@ -10,5 +10,8 @@ struct draw_scene;
 /* The camera's picture of `pixels`. */
 bool producer_traces_camera(const struct draw_scene *scene, size_t pixels);
 
+/* Pixels against depth maps: on the CPU's job pool rather than by shaders. */
+bool producer_resolves_on_cpu(const struct draw_scene *scene);
+
 /* A light's map of `texels`. */
 bool producer_traces_map(const struct draw_scene *scene, size_t texels);

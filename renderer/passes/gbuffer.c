@@ -43,6 +43,7 @@ static bool upload_view(struct gbuffer *g, struct draw_scene *scene, struct erro
 
 bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, struct error *err)
 {
+    g->pixels_read = false;
     return gl_texture_size(&g->ids, scene->gl, GL_R32UI, view->width, view->height, err) &&
            gl_texture_size(&g->pixels, scene->gl, GL_RGBA32UI, view->width, view->height, err) &&
            (!scene->has_emission || gl_texture_size(&g->emission, scene->gl, GL_RGBA16F, view->width, view->height, err)) &&
@@ -61,6 +62,8 @@ void gbuffer_finish(struct gbuffer *g)
     gl_target_finish(&g->target);
     free(g->cpu_ids);
     free(g->cpu_pixels);
+    free(g->read_pixels);
+    free(g->values);
     memset(g, 0, sizeof *g);
 }
 
@@ -97,4 +100,43 @@ const uint32_t *gbuffer_read_ids(struct gbuffer *g, struct gl_context *gl, struc
     g->cpu_room = 0;
     glGetTextureImage(g->ids.id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, (GLsizei)(pixels * sizeof *ids), ids);
     return gl_check(gl, err) ? ids : NULL;
+}
+
+/* Room for `size` bytes a pixel; what was there is lost when it grows. */
+static void *picture_room(const struct gbuffer *g, void *old, size_t *room, size_t size, struct error *err)
+{
+    size_t pixels = (size_t)g->ids.width * g->ids.height;
+    if (*room >= pixels)
+        return old;
+    free(old);
+    void *grown = malloc(pixels * size);
+    *room = grown ? pixels : 0;
+    if (!grown)
+        error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture of %u x %u", g->ids.width, g->ids.height);
+    return grown;
+}
+
+const struct pixel *gbuffer_read_pixels(struct gbuffer *g, struct draw_scene *scene, struct error *err)
+{
+    uint32_t width = g->pixels.width, height = g->pixels.height, top = g->tiles.top, bottom = g->tiles.bottom;
+    if (g->traced && scene->plain)
+        return g->cpu_pixels;
+    g->read_pixels = picture_room(g, g->read_pixels, &g->read_room, sizeof *g->read_pixels, err);
+    if (!g->read_pixels || g->pixels_read)
+        return g->read_pixels;
+    if (top >= bottom)
+        top = bottom = height;
+    size_t row = width * sizeof *g->read_pixels;
+    memset(g->read_pixels, 0, top * row);
+    memset(g->read_pixels + (size_t)bottom * width, 0, (height - bottom) * row);
+    if (top < bottom)
+        glGetTextureSubImage(g->pixels.id, 0, 0, (GLint)top, 0, (GLsizei)width, (GLsizei)(bottom - top), 1, GL_RGBA_INTEGER,
+                             GL_UNSIGNED_INT, (GLsizei)((bottom - top) * row), g->read_pixels + (size_t)top * width);
+    g->pixels_read = gl_check(scene->gl, err);
+    return g->pixels_read ? g->read_pixels : NULL;
+}
+
+float *gbuffer_values(struct gbuffer *g, struct error *err)
+{
+    return g->values = picture_room(g, g->values, &g->value_room, sizeof *g->values, err);
 }

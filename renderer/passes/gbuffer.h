@@ -29,6 +29,11 @@ struct gbuffer {
     uint32_t *cpu_ids;        /* width * height; valid if traced, else filled on request */
     struct pixel *cpu_pixels; /* width * height; made when tracing */
     size_t cpu_room;          /* pixels that these two have room for */
+    struct pixel *read_pixels; /* width * height; made when asked for */
+    size_t read_room;
+    float *values; /* scratch, likewise */
+    size_t value_room;
+    bool pixels_read;         /* read_pixels is the last picture's */
     bool traced;              /* the last picture's producer */
     bool ids_uploaded;        /* ids is the last picture's */
     bool pixels_done;         /* pixels is the last picture's */
@@ -46,3 +51,9 @@ bool gbuffer_need_ids(struct gbuffer *g, struct gl_context *gl, struct error *er
 
 /* The ids in CPU memory, reading them back (and waiting) if they were rasterized. NULL on error. */
 const uint32_t *gbuffer_read_ids(struct gbuffer *g, struct gl_context *gl, struct error *err);
+
+/* The same for the pixels. */
+const struct pixel *gbuffer_read_pixels(struct gbuffer *g, struct draw_scene *scene, struct error *err);
+
+/* Scratch of a float a pixel, for whoever makes one light's visibility on the CPU. NULL on error. */
+float *gbuffer_values(struct gbuffer *g, struct error *err);

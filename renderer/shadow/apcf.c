@@ -1,11 +1,13 @@
 /* Adaptive percentage-closer filtering: Zhang, Yang, Liu 2012, "Design and implementation of an algorithm of real-time shadow rendering".
  * Where the text is silent: docs/filtered.md. */
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "shadow/depth_pass.h"
 #include "shadow/light_maps.h"
 #include "shadow/shared_params.h"
 
-enum { PARAM_BIAS = SHADOW_PARAM_FIT + 1, PARAM_SLOPE, PARAM_TEMPLATE, PARAM_WEIGHTS, PARAM_UMBRA };
+enum { PARAM_TEMPLATE = SHADOW_PARAM_SLOPE + 1, PARAM_WEIGHTS, PARAM_UMBRA };
 
 static const char *const weights_choices[] = {"product", "sum", "flat", NULL};
 
@@ -37,10 +39,32 @@ static const struct param_desc params[] = {
      .initial = 0},
 };
 
+static void weigh(struct depth_square *s, int weights)
+{
+    int reach = s->side / 2;
+    s->total = 0;
+    for (int y = 0; y < s->side; y++)
+        for (int x = 0; x < s->side; x++) {
+            int a = reach + 1 - abs(x - reach), b = reach + 1 - abs(y - reach);
+            s->weight[y][x] = weights == 0 ? a * b : weights == 1 ? a + b - 1 : 1;
+            s->total += s->weight[y][x];
+        }
+}
+
+static bool resolve_on_cpu(const struct light_maps *maps, const struct shadow_input *in, struct error *err)
+{
+    struct depth_square square;
+    depth_square_flat(&square, (int)in->params[PARAM_TEMPLATE]);
+    weigh(&square, (int)in->params[PARAM_WEIGHTS]);
+    return depth_pass_filter(maps, in, DEPTH_ADAPTIVE, &square, (float)in->params[PARAM_UMBRA], err);
+}
+
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct light_maps *maps = state;
     char defines[96];
+    if (in->resolve_on_cpu)
+        return resolve_on_cpu(maps, in, err);
     if (maps->fit.map_count == 0)
         return shadow_run_full_screen(in, "none.frag", NULL, err);
     snprintf(defines, sizeof defines, "MAPS %u\nMAP_PERSPECTIVE %d\nTEMPLATE %d\nWEIGHTS %d\n", maps->fit.map_count,

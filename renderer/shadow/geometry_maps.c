@@ -39,13 +39,12 @@ void geometry_maps_finish(struct geometry_maps *g)
     for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
         geometry_map_finish(&g->maps[i]);
     free(g->visibility);
-    free(g->surfaces);
     memset(g, 0, sizeof *g);
 }
 
 size_t geometry_maps_bytes(const struct geometry_maps *g)
 {
-    size_t sum = g->pixel_room * sizeof *g->visibility + g->surface_room * sizeof *g->surfaces;
+    size_t sum = g->pixel_room * sizeof *g->visibility;
     for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
         sum += geometry_map_bytes(&g->maps[i]);
     return sum;
@@ -221,25 +220,6 @@ static bool out_of_memory(struct error *err)
     return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture's visibility");
 }
 
-static const struct pixel *read_surfaces(struct geometry_maps *g, const struct shadow_input *in, struct error *err)
-{
-    struct gbuffer *b = in->gbuffer;
-    size_t pixels = (size_t)in->view->width * in->view->height;
-    if (b->traced && in->draw->plain)
-        return b->cpu_pixels;
-    if (g->surface_room < pixels) {
-        free(g->surfaces);
-        g->surfaces = malloc(pixels * sizeof *g->surfaces);
-        g->surface_room = g->surfaces ? pixels : 0;
-        if (!g->surfaces) {
-            out_of_memory(err);
-            return NULL;
-        }
-    }
-    glGetTextureImage(b->pixels.id, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, (GLsizei)(pixels * sizeof *g->surfaces), g->surfaces);
-    return gl_check(in->gl, err) ? g->surfaces : NULL;
-}
-
 bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *in, geometry_decide *decide, void *state,
                            struct error *err)
 {
@@ -259,7 +239,7 @@ bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *i
                               .width = in->view->width,
                               .height = in->view->height};
     job.ids = gbuffer_read_ids(in->gbuffer, in->gl, err);
-    job.surfaces = job.ids ? read_surfaces(g, in, err) : NULL;
+    job.surfaces = job.ids ? gbuffer_read_pixels(in->gbuffer, in->draw, err) : NULL;
     if (!job.surfaces)
         return false;
     for (unsigned i = 0; i < g->count; i++)

@@ -17,8 +17,7 @@ struct geometry_maps {
     struct geometry_map maps[SHADOW_MAPS_MAX];
     unsigned count;
     float *visibility; /* of the last picture */
-    struct pixel *surfaces;
-    size_t pixel_room, surface_room;
+    size_t pixel_room;
 };
 
 /* A receiver on a map. */

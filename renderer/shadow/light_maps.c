@@ -10,11 +10,12 @@
 #include "draw/draw_scene.h"
 #include "draw/put_vec4.h"
 #include "gl/context.h"
+#include "shadow/lanes.h"
 #include "trace/tracer.h"
 
-static bool rasterize_map(struct light_maps *m, const struct shadow_input *in, unsigned layer, struct error *err)
+static bool rasterize_map(struct light_maps *m, const struct shadow_input *in, unsigned map, unsigned layer, struct error *err)
 {
-    const struct view *view = &in->fit->maps[layer];
+    const struct view *view = &in->fit->maps[map];
     static const GLfloat farthest = 0;
     gl_target_attach(&m->target, NULL, &m->depth, layer);
     gl_target_bind(&m->target, view->width, view->height);
@@ -28,12 +29,18 @@ struct encode_job {
     float *texels;
 };
 
+/* INFINITY becomes 0 by itself. */
 void light_maps_encode(const struct view *v, float *texels, size_t count)
 {
     float near = (float)v->near, scale = (float)(1 / (v->far - v->near)), far = (float)v->far;
-    for (size_t i = 0; i < count; i++) {
+    size_t i = 0;
+    for (; i + LANES <= count; i += LANES) {
+        lanes depth = lanes_load(texels + i), d = v->orthographic ? (far - depth) * scale : near / depth;
+        lanes_store(texels + i, lanes_min(lanes_max(d, lanes_all(0)), lanes_all(1)));
+    }
+    for (; i < count; i++) {
         float d = v->orthographic ? (far - texels[i]) * scale : near / texels[i];
-        texels[i] = isinf(texels[i]) ? 0 : fminf(fmaxf(d, 0), 1);
+        texels[i] = d > 1 ? 1 : d > 0 ? d : 0;
     }
 }
 
@@ -44,50 +51,104 @@ static void encode_row(void *context, size_t row, unsigned worker)
     light_maps_encode(job->view, job->texels + row * job->view->width, job->view->width);
 }
 
-static bool trace_map(struct light_maps *m, const struct shadow_input *in, const struct tracer *tracer, unsigned layer,
-                      float *texels, struct error *err)
+static void trace_map(const struct shadow_input *in, const struct tracer *tracer, unsigned map, float *texels)
 {
-    const struct view *view = &in->fit->maps[layer];
+    const struct view *view = &in->fit->maps[map];
     tracer_light(tracer, view, in->fit->casters, in->fit->caster_count, in->pool, texels, NULL);
     struct encode_job job = {view, texels};
     job_pool_for(in->pool, view->height, encode_row, &job);
-    glTextureSubImage3D(m->depth.id, 0, 0, 0, (GLint)layer, (GLsizei)view->width, (GLsizei)view->height, 1, GL_DEPTH_COMPONENT,
-                        GL_FLOAT, texels);
+}
+
+static size_t texels_of(const struct light_maps *m) { return (size_t)m->fit.maps[0].width * m->fit.maps[0].height; }
+
+static bool reserve(struct light_maps *m, unsigned maps, struct error *err)
+{
+    size_t count = maps * texels_of(m) + LIGHT_MAPS_PAST;
+    if (m->texel_room == count)
+        return true;
+    free(m->texels);
+    m->texels = malloc(count * sizeof *m->texels);
+    m->texel_room = m->texels ? count : 0;
+    if (!m->texels)
+        return error_set(err, ERROR_TRY_AGAIN, "size", "out of memory for %u maps of %u x %u", maps, m->fit.maps[0].width,
+                         m->fit.maps[0].height);
+    memset(m->texels + count - LIGHT_MAPS_PAST, 0, LIGHT_MAPS_PAST * sizeof *m->texels);
+    return true;
+}
+
+static bool size_texture(struct light_maps *m, const struct shadow_input *in, unsigned layers, struct error *err)
+{
+    return gl_texture_size_layers(&m->depth, in->gl, GL_DEPTH_COMPONENT32F, m->fit.maps[0].width, m->fit.maps[0].height, layers,
+                                  err);
+}
+
+static void drop_texels(struct light_maps *m)
+{
+    free(m->texels);
+    m->texels = NULL;
+    m->texel_room = 0;
+}
+
+static void begin(struct light_maps *m, const struct shadow_input *in)
+{
+    m->fit = *in->fit;
+    m->fit.casters = NULL;
+}
+
+static bool trace_on_gpu(struct light_maps *m, const struct shadow_input *in, struct error *err)
+{
+    const struct tracer *tracer = in->tracer(in->owner, err);
+    const struct view *view = &in->fit->maps[0];
+    if (!tracer || !reserve(m, 1, err))
+        return false;
+    for (unsigned i = 0; i < m->fit.map_count; i++) {
+        trace_map(in, tracer, i, m->texels);
+        glTextureSubImage3D(m->depth.id, 0, 0, 0, (GLint)i, (GLsizei)view->width, (GLsizei)view->height, 1, GL_DEPTH_COMPONENT,
+                            GL_FLOAT, m->texels);
+    }
+    drop_texels(m);
     return gl_check(in->gl, err);
 }
 
-static bool trace_maps(struct light_maps *m, const struct shadow_input *in, struct error *err)
+static bool prepare_on_gpu(struct light_maps *m, const struct shadow_input *in, struct error *err)
 {
-    const struct tracer *tracer = in->tracer(in->owner, err);
-    if (!tracer)
+    begin(m, in);
+    if (m->fit.map_count == 0)
+        return true;
+    if (!size_texture(m, in, m->fit.map_count, err))
         return false;
-    const struct view *first = &in->fit->maps[0];
-    float *texels = malloc((size_t)first->width * first->height * sizeof *texels);
-    bool ok =
-        texels || error_set(err, ERROR_TRY_AGAIN, "size", "out of memory for a map of %u x %u", first->width, first->height);
-    for (unsigned i = 0; ok && i < in->fit->map_count; i++)
-        ok = trace_map(m, in, tracer, i, texels, err);
-    free(texels);
-    return ok;
+    if (in->trace_maps)
+        return trace_on_gpu(m, in, err);
+    for (unsigned i = 0; i < m->fit.map_count; i++)
+        if (!rasterize_map(m, in, i, i, err))
+            return false;
+    return true;
+}
+
+bool light_maps_prepare_on_cpu(struct light_maps *m, const struct shadow_input *in, struct error *err)
+{
+    begin(m, in);
+    if (m->fit.map_count == 0)
+        return true;
+    const struct tracer *tracer = in->trace_maps ? in->tracer(in->owner, err) : NULL;
+    if ((in->trace_maps && !tracer) || !reserve(m, m->fit.map_count, err) || (!tracer && !size_texture(m, in, 1, err)))
+        return false;
+    for (unsigned i = 0; i < m->fit.map_count; i++) {
+        float *texels = m->texels + i * texels_of(m);
+        if (tracer) {
+            trace_map(in, tracer, i, texels);
+            continue;
+        }
+        if (!rasterize_map(m, in, i, 0, err))
+            return false;
+        glGetTextureImage(m->depth.id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, (GLsizei)(texels_of(m) * sizeof *texels), texels);
+    }
+    return gl_check(in->gl, err);
 }
 
 bool light_maps_prepare(void *maps, const struct shadow_input *in, struct error *err)
 {
-    struct light_maps *m = maps;
-    m->fit = *in->fit;
-    m->fit.casters = NULL;
-    uint32_t size = in->fit->maps[0].width;
-    unsigned count = in->fit->map_count;
-    if (count == 0)
-        return true;
-    if (!gl_texture_size_layers(&m->depth, in->gl, GL_DEPTH_COMPONENT32F, size, size, count, err))
-        return false;
-    if (in->trace_maps)
-        return trace_maps(m, in, err);
-    for (unsigned i = 0; i < count; i++)
-        if (!rasterize_map(m, in, i, err))
-            return false;
-    return true;
+    return in->resolve_on_cpu ? light_maps_prepare_on_cpu(maps, in, err) : prepare_on_gpu(maps, in, err);
 }
 
 static void put_row(vec4 out, struct dvec3 axis, struct dvec3 from_map_eye)
@@ -125,7 +186,7 @@ bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct
 size_t light_maps_bytes(const void *maps)
 {
     const struct light_maps *m = maps;
-    return m->depth.bytes + m->draw.rows.size + m->draw.commands.size + m->draw.block.size + m->block.size;
+    return m->depth.bytes + m->texel_room * sizeof *m->texels + m->draw.rows.size + m->draw.commands.size + m->draw.block.size + m->block.size;
 }
 
 void light_maps_finish(void *maps)
@@ -135,5 +196,6 @@ void light_maps_finish(void *maps)
     gl_target_finish(&m->target);
     draw_view_finish(&m->draw);
     gl_buffer_finish(&m->block);
+    drop_texels(m);
     memset(m, 0, sizeof *m);
 }

@@ -54,7 +54,7 @@ static struct light_state *find(struct light_states *s, const struct shadow_syst
     struct light_state *moved = NULL;
     for (struct light_state *state = s->first; state; state = state->next) {
         if (state->system != system || !same_params(system, &state->params, params) || state->traced != in->trace_maps ||
-            state->memory != in->memory)
+            state->on_cpu != in->resolve_on_cpu || state->memory != in->memory)
             continue;
         bool own = state->viewer == in->viewer;
         if (same_light(&state->light, in->light) && (own || !(system->flags & SHADOW_VIEW_DRIVEN)))
@@ -79,6 +79,7 @@ static struct light_state *create(struct light_states *s, const struct shadow_sy
     state->light_index = in->light_index;
     state->viewer = in->viewer;
     state->traced = in->trace_maps;
+    state->on_cpu = in->resolve_on_cpu;
     state->memory = in->memory;
     if (system->init && !system->init(state->state, in, err)) {
         destroy(state);

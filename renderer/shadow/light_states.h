@@ -19,6 +19,7 @@ struct light_state {
     uint32_t viewer; /* the last to ask; with light_index: whose structure is built anew when its light moves */
     bool prepared;
     bool traced; /* its maps were traced */
+    bool on_cpu; /* and are resolved there */
     uint64_t last_frame;
     size_t memory; /* as in struct shadow_input */
     struct shadow_fit fit;

@@ -35,12 +35,9 @@ struct mask {
     struct adjacency adjacency;
     struct mask_contour contours[SHADOW_MAPS_MAX];
     unsigned count;
-    float *depths; /* of all maps */
-    size_t depth_count;
     float *visibility; /* of the last picture; masks likewise */
     uint32_t *receivers, *lit;
-    struct pixel *surfaces;
-    size_t pixel_room, surface_room, pixels;
+    size_t pixel_room, pixels;
     struct mask_counts counts;
 };
 
@@ -67,27 +64,13 @@ static bool init(void *state, const struct shadow_input *in, struct error *err)
     return adjacency_init(&s->adjacency, in->scene, err);
 }
 
-static bool read_depths(struct mask *s, const struct shadow_input *in, struct error *err)
-{
-    size_t count = (size_t)s->maps.depth.width * s->maps.depth.height * s->maps.depth.layers;
-    if (s->depth_count < count) {
-        free(s->depths);
-        s->depths = malloc(count * sizeof *s->depths);
-        s->depth_count = s->depths ? count : 0;
-        if (!s->depths)
-            return out_of_memory(err);
-    }
-    glGetTextureImage(s->maps.depth.id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, (GLsizei)(count * sizeof *s->depths), s->depths);
-    return gl_check(in->gl, err);
-}
-
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)
 {
     struct mask *s = state;
     for (unsigned i = in->fit->map_count; i < s->count; i++)
         mask_contour_finish(&s->contours[i]);
     s->count = 0;
-    if (!light_maps_prepare(&s->maps, in, err))
+    if (!light_maps_prepare_on_cpu(&s->maps, in, err))
         return false;
     for (unsigned i = 0; i < in->fit->map_count; i++) {
         if (!mask_contour_build(&s->contours[i], in->scene, &s->adjacency, &in->fit->maps[i], in->fit->casters,
@@ -95,7 +78,7 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
             return false;
         s->count = i + 1;
     }
-    return s->count == 0 || read_depths(s, in, err);
+    return true;
 }
 
 static struct mask_map place_map(const struct mask *s, unsigned i, struct dvec3 camera_eye)
@@ -104,7 +87,7 @@ static struct mask_map place_map(const struct mask *s, unsigned i, struct dvec3 
     const struct view *v = &c->mesh.view;
     const struct dvec3 axes[3] = {v->right, v->up, v->forward};
     struct mask_map m = {.contour = c,
-                         .depths = s->depths + (size_t)i * c->size * c->size,
+                         .depths = s->maps.texels + (size_t)i * c->size * c->size,
                          .scale_x = (float)c->mesh.scale_x,
                          .scale_y = (float)c->mesh.scale_y,
                          .offset_x = (float)c->mesh.offset_x,
@@ -237,24 +220,6 @@ static bool reserve(struct mask *s, size_t pixels, struct error *err)
     return s->pixel_room || out_of_memory(err);
 }
 
-static const struct pixel *read_surfaces(struct mask *s, const struct shadow_input *in, struct error *err)
-{
-    struct gbuffer *b = in->gbuffer;
-    if (b->traced && in->draw->plain)
-        return b->cpu_pixels;
-    if (s->surface_room < s->pixels) {
-        free(s->surfaces);
-        s->surfaces = malloc(s->pixels * sizeof *s->surfaces);
-        s->surface_room = s->surfaces ? s->pixels : 0;
-        if (!s->surfaces) {
-            out_of_memory(err);
-            return NULL;
-        }
-    }
-    glGetTextureImage(b->pixels.id, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, (GLsizei)(s->pixels * sizeof *s->surfaces), s->surfaces);
-    return gl_check(in->gl, err) ? s->surfaces : NULL;
-}
-
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct mask *s = state;
@@ -267,7 +232,7 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
     if (!reserve(s, (size_t)job.width * job.height, err))
         return false;
     job.ids = gbuffer_read_ids(in->gbuffer, in->gl, err);
-    job.surfaces = job.ids ? read_surfaces(s, in, err) : NULL;
+    job.surfaces = job.ids ? gbuffer_read_pixels(in->gbuffer, in->draw, err) : NULL;
     if (!job.surfaces)
         return false;
     job.counts = calloc(workers, sizeof *job.counts);
@@ -326,18 +291,16 @@ static void finish(void *state)
     adjacency_finish(&s->adjacency);
     for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
         mask_contour_finish(&s->contours[i]);
-    free(s->depths);
     free(s->visibility);
     free(s->receivers);
     free(s->lit);
-    free(s->surfaces);
 }
 
 static size_t bytes(const void *state)
 {
     const struct mask *s = state;
     size_t sum = sizeof s->table.bits + light_maps_bytes(&s->maps) + s->adjacency.count * sizeof *s->adjacency.across +
-                 s->depth_count * sizeof *s->depths + s->pixel_room * 12 + s->surface_room * sizeof *s->surfaces;
+                 s->pixel_room * 12;
     for (unsigned i = 0; i < s->count; i++)
         sum += s->contours[i].bytes;
     return sum;

@@ -1,4 +1,5 @@
 /* Percentage-closer filtering: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps". */
+#include "shadow/depth_pass.h"
 #include "shadow/light_maps.h"
 #include "shadow/shared_params.h"
 
@@ -15,8 +16,15 @@ static const struct param_desc params[] = {
      .odd = true},
 };
 
+enum { PARAM_KERNEL = SHADOW_PARAM_SLOPE + 1 };
+
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
+    if (in->resolve_on_cpu) {
+        struct depth_square square;
+        depth_square_flat(&square, (int)in->params[PARAM_KERNEL]);
+        return depth_pass_filter(state, in, DEPTH_SQUARE, &square, 0, err);
+    }
     return shadow_run_with_maps(state, in, "pcf.frag", err);
 }
 

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include "gl/context.h"
+#include "passes/gbuffer.h"
 
 void pixel_put(float out[3], struct dvec3 v)
 {
@@ -47,7 +48,9 @@ bool pixel_upload(const struct shadow_input *in, const float *visibility, struct
                                           &texture);
     glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER,
                                           &layer);
-    glTextureSubImage3D((GLuint)texture, 0, 0, 0, layer, (GLsizei)in->view->width, (GLsizei)in->view->height, 1, GL_RED, GL_FLOAT,
-                        visibility);
+    const struct tiles *t = &in->gbuffer->tiles;
+    if (t->top < t->bottom)
+        glTextureSubImage3D((GLuint)texture, 0, 0, (GLint)t->top, layer, (GLsizei)in->view->width, (GLsizei)(t->bottom - t->top),
+                            1, GL_RED, GL_FLOAT, visibility + (size_t)t->top * in->view->width);
     return gl_check(in->gl, err);
 }

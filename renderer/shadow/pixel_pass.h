@@ -19,5 +19,5 @@ struct pixel_rays pixel_rays_of(const struct view *view);
 struct pixel_light pixel_light_of(const struct light *light, struct dvec3 camera_eye);
 void pixel_put(float out[3], struct dvec3 v);
 
-/* `visibility`: one value a pixel of in->view, to the layer that the framework bound. */
+/* `visibility`: one value a pixel of in->view, to the layer that the framework bound; only rows that hold surfaces are looked at. */
 bool pixel_upload(const struct shadow_input *in, const float *visibility, struct error *err);

@@ -66,8 +66,9 @@ struct shadow_input {
     const struct tracer *(*tracer)(void *owner, struct error *err);
     const struct reference *(*reference)(void *owner, struct error *err);
     void *owner;
-    bool trace_maps; /* make depth maps by tracing (draw/producer.h) */
-    size_t memory;   /* bytes that a light's structure may take; 0: no limit */
+    bool trace_maps;     /* make depth maps by tracing (draw/producer.h) */
+    bool resolve_on_cpu; /* where a system can do either (draw/producer.h) */
+    size_t memory;       /* bytes that a light's structure may take; 0: no limit */
     struct job_pool *pool;
     struct gl_context *gl;
 };

@@ -7,7 +7,7 @@
 
 extern const char *const shadow_fit_choices[];
 
-enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT };
+enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT, SHADOW_PARAM_BIAS, SHADOW_PARAM_SLOPE };
 
 /* The first two descriptors of every map system. */
 #define SHADOW_MAP_PARAMS                                                                                                 \
@@ -23,7 +23,7 @@ enum { SHADOW_PARAM_SIZE, SHADOW_PARAM_FIT };
         .kind = PARAM_CHOICE, .min = 0, .max = 1, .initial = 0, .choices = shadow_fit_choices                             \
     }
 
-/* The next two of those that compare depths with a bias. Defaults: the pair with the fewest misclassified pixels over the four
+/* The next two of those that compare depths with a bias, SHADOW_PARAM_BIAS and _SLOPE. Defaults: the pair with the fewest misclassified pixels over the four
  * paper models at size 1024 (docs/bias.md). */
 #define SHADOW_BIAS_PARAMS(bias_default, slope_default)                                                                       \
     {.name = "bias",                                                                                                          \

@@ -1,4 +1,5 @@
 /* Shadow map: Williams 1978, "Casting curved shadows on curved surfaces". */
+#include "shadow/depth_pass.h"
 #include "shadow/light_maps.h"
 #include "shadow/shared_params.h"
 
@@ -6,6 +7,8 @@ static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS
 
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
+    if (in->resolve_on_cpu)
+        return depth_pass_filter(state, in, DEPTH_ONE, NULL, 0, err);
     return shadow_run_with_maps(state, in, "sm.frag", err);
 }
 

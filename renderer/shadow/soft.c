@@ -10,9 +10,10 @@
 #include "shadow/light_maps.h"
 #include "shadow/map_ranges.h"
 #include "shadow/shared_params.h"
+#include "shadow/soft_pass.h"
 #include "trace/tracer.h"
 
-enum { PARAM_BIAS = SHADOW_PARAM_FIT + 1, PARAM_SLOPE, PARAM_NEAR, PARAM_FAR, PARAM_LIFT };
+enum { PARAM_NEAR = SHADOW_PARAM_SLOPE + 1, PARAM_FAR, PARAM_LIFT };
 
 static const struct param_desc params[] = {
     SHADOW_MAP_PARAMS,
@@ -42,7 +43,8 @@ static const struct param_desc params[] = {
 
 struct soft {
     struct light_maps maps;
-    struct map_ranges ranges;
+    struct soft_pass on_cpu;
+    struct map_ranges ranges; /* this and the rest: on the GPU */
     /* Of the largest width and height seen: views of several sizes take turns. */
     struct gl_texture term, radius, blurred;
     struct gl_target target;
@@ -72,8 +74,12 @@ static uint32_t block_side(const struct soft *s, const struct shadow_input *in)
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)
 {
     struct soft *s = state;
-    return light_maps_prepare(&s->maps, in, err) &&
-           (s->maps.fit.map_count == 0 || map_ranges_prepare(&s->ranges, &s->maps, in, block_side(s, in), err));
+    if (!light_maps_prepare(&s->maps, in, err))
+        return false;
+    if (s->maps.fit.map_count == 0)
+        return true;
+    return in->resolve_on_cpu ? soft_pass_prepare(&s->on_cpu, &s->maps, in, block_side(s, in), err)
+                              : map_ranges_prepare(&s->ranges, &s->maps, in, block_side(s, in), err);
 }
 
 static bool reserve(struct soft *s, const struct shadow_input *in, struct error *err)
@@ -116,12 +122,23 @@ static bool run_term(struct soft *s, const struct shadow_input *in, struct error
     return shadow_run_full_screen(in, "soft_term.frag", defines, err);
 }
 
+static bool resolve_on_cpu(struct soft *s, const struct shadow_input *in, struct error *err)
+{
+    const struct soft_settings settings = {.radius = (float)light_radius(s, in),
+                                           .near = (float)in->params[PARAM_NEAR],
+                                           .far = (float)in->params[PARAM_FAR],
+                                           .lift = (float)in->params[PARAM_LIFT]};
+    return soft_pass_resolve(&s->on_cpu, &s->maps, in, &settings, err);
+}
+
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct soft *s = state;
     GLint visibility;
     if (s->maps.fit.map_count == 0)
         return shadow_run_full_screen(in, "none.frag", NULL, err);
+    if (in->resolve_on_cpu)
+        return resolve_on_cpu(s, in, err);
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &visibility);
     if (!reserve(s, in, err) || !bind(s, in, err) || !run_term(s, in, err))
         return false;
@@ -138,6 +155,7 @@ static void finish(void *state)
 {
     struct soft *s = state;
     light_maps_finish(&s->maps);
+    soft_pass_finish(&s->on_cpu);
     map_ranges_finish(&s->ranges);
     gl_texture_finish(&s->term);
     gl_texture_finish(&s->radius);
@@ -149,7 +167,7 @@ static void finish(void *state)
 static size_t bytes(const void *state)
 {
     const struct soft *s = state;
-    return light_maps_bytes(&s->maps) + map_ranges_bytes(&s->ranges) + s->term.bytes + s->radius.bytes + s->blurred.bytes +
+    return light_maps_bytes(&s->maps) + soft_pass_bytes(&s->on_cpu) + map_ranges_bytes(&s->ranges) + s->term.bytes + s->radius.bytes + s->blurred.bytes +
            s->block.size;
 }
 

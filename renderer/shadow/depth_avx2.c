@@ -1,0 +1,8 @@
+#include "shadow/depth_filters.h"
+#include "shadow/soft_lanes.h"
+
+#ifdef __AVX2__
+const struct depth_kernel depth_avx2 = {filter_rows, soft_term_rows, soft_blur_x_rows, soft_blur_y_rows};
+#else
+const struct depth_kernel depth_avx2 = {0};
+#endif

@@ -1,0 +1,83 @@
+/* From pixels to visibility by depth maps, on the CPU: what sm, pcf, apcf and soft end in where the GL device is a CPU as well
+ * (draw/producer.h). A software rasterizer runs both sides of a shader's branches and fetches texel by texel; here eight pixels go together, and
+ * what none of them needs is left out. The loops are compiled once an instruction set (depth_plain.c, depth_avx2.c), to the same bits.
+ *
+ * The arithmetic is that of shaders/receiver.glsl and shaders/maps.glsl, but for roundings. */
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "shadow/light_maps.h"
+#include "shadow/pixel_pass.h"
+#include "shadow/shadow.h"
+
+struct pixel;
+
+enum { DEPTH_ROWS = 8 }; /* picture rows a job */
+
+/* A map as maps_block has it (shaders/blocks.h). */
+struct depth_map {
+    float row[3][4];
+    float scale_x, scale_y, offset_x, offset_y;
+    float near, range, far; /* range: far - near */
+    float texel;            /* world size, at depth 1 if perspective */
+};
+
+enum depth_filter {
+    DEPTH_ONE,      /* the point's own texel */
+    DEPTH_SQUARE,   /* the weighted share of a square of texels that see the point */
+    DEPTH_ADAPTIVE, /* the same where the square's corners differ; where they agree, they decide */
+};
+
+enum { DEPTH_SIDE_MAX = 31, DEPTH_WEIGHT_LANES = (DEPTH_SIDE_MAX + 7) / 8 * 8 };
+
+/* The weights of a square, rows of whole vectors: 0 beyond its side. */
+struct depth_square {
+    int side; /* texels, odd */
+    int32_t total;
+    int32_t weight[DEPTH_SIDE_MAX][DEPTH_WEIGHT_LANES] __attribute__((aligned(32)));
+};
+
+/* One light of one picture at work. Everything is relative to the camera's eye. */
+struct depth_job {
+    const struct pixel *pixels;
+    float *visibility;
+    uint32_t width, height;
+    uint32_t top, bottom; /* the rows that hold surfaces */
+    struct pixel_rays rays;
+    struct pixel_light light;
+    struct depth_map maps[SHADOW_MAPS_MAX];
+    unsigned map_count;
+    bool orthographic; /* the maps */
+    int32_t side;      /* texels */
+    const float *texels;
+    float bias, slope;
+    enum depth_filter filter;
+    const struct depth_square *square;
+    float umbra; /* what is left of the light where all is dark */
+};
+
+/* For job_pool_for(): job `index` of depth_job_count(). */
+typedef void depth_rows(void *job, size_t index, unsigned worker);
+struct depth_kernel {
+    depth_rows *filter;                               /* of struct depth_job */
+    depth_rows *soft_term, *soft_blur_x, *soft_blur_y; /* of struct soft_job (soft_pass.h), one after the other; the first: all rows */
+};
+extern const struct depth_kernel depth_plain, depth_avx2; /* the latter empty where the compiler has none */
+
+/* The best that this machine runs. */
+const struct depth_kernel *depth_kernel_choose(void);
+
+size_t depth_job_count(const struct depth_job *job);
+
+/* All but filter, square and umbra, for a system with SHADOW_BIAS_PARAMS whose maps were prepared with in->resolve_on_cpu. `visibility` is
+ * scratch of the picture. */
+bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err);
+
+/* A square of `side` texels, all alike. */
+void depth_square_flat(struct depth_square *square, int side);
+
+/* The whole pass for systems that filter and no more. square: NULL for DEPTH_ONE. */
+bool depth_pass_filter(const struct light_maps *maps, const struct shadow_input *in, enum depth_filter filter,
+                       const struct depth_square *square, float umbra, struct error *err);

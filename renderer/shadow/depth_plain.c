@@ -1,0 +1,4 @@
+#include "shadow/depth_filters.h"
+#include "shadow/soft_lanes.h"
+
+const struct depth_kernel depth_plain = {filter_rows, soft_term_rows, soft_blur_x_rows, soft_blur_y_rows};

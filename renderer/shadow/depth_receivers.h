@@ -1,0 +1,192 @@
+/* Eight pixels' receivers, and where they lie on the light's maps. Included by the kernels only (depth_plain.c, depth_avx2.c). */
+#pragma once
+
+#include <string.h>
+
+#include "scene/pixel.h"
+#include "shadow/depth_pass.h"
+#include "shadow/lanes.h"
+
+struct vector_lanes {
+    lanes x, y, z;
+};
+
+LANES_INLINE lanes lanes_dot(const struct vector_lanes *a, const struct vector_lanes *b)
+{
+    return a->x * b->x + a->y * b->y + a->z * b->z;
+}
+
+/* The dot product with the first three of `row`. */
+LANES_INLINE lanes lanes_along(const float row[3], const struct vector_lanes *v)
+{
+    return row[0] * v->x + row[1] * v->y + row[2] * v->z;
+}
+
+/* struct Receiver of shaders/receiver.glsl. */
+struct receivers {
+    struct vector_lanes point, direction; /* of the pixel's ray */
+    struct vector_lanes normal;           /* not of unit length */
+    struct vector_lanes v;                /* to the light, or against a directional one's direction */
+    lanes depth, d2, n_v;                 /* along the camera's axis; v . v; normal . v */
+    lanes n2;                             /* normal . normal */
+    lane_ints receives;
+};
+
+/* The first two words of eight pixels in a row. */
+LANES_INLINE void load_pixels(const struct pixel *p, lane_ints *geometric, lanes *depth)
+{
+#ifdef __AVX2__
+    const __m256i *q = (const __m256i *)p;
+    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    __m256i a = _mm256_unpacklo_epi32(_mm256_loadu_si256(q), _mm256_loadu_si256(q + 1));
+    __m256i b = _mm256_unpacklo_epi32(_mm256_loadu_si256(q + 2), _mm256_loadu_si256(q + 3));
+    *geometric = (lane_ints)_mm256_permutevar8x32_epi32(_mm256_unpacklo_epi64(a, b), order);
+    *depth = (lanes)_mm256_permutevar8x32_epi32(_mm256_unpackhi_epi64(a, b), order);
+#else
+    for (int i = 0; i < LANES; i++) {
+        (*geometric)[i] = (int32_t)p[i].geometric;
+        (*depth)[i] = p[i].depth;
+    }
+#endif
+}
+
+/* octahedral_raw() of shaders/pixel.glsl. */
+LANES_INLINE struct vector_lanes unfold(lane_ints geometric)
+{
+    lanes a = lanes_from((geometric << 16) >> 16) * (1.0f / 32767), b = lanes_from(geometric >> 16) * (1.0f / 32767);
+    lanes c = 1 - lanes_abs(a) - lanes_abs(b), t = lanes_max(-c, lanes_all(0));
+    return (struct vector_lanes){a + lanes_pick(a >= 0, -t, t), b + lanes_pick(b >= 0, -t, t), c};
+}
+
+LANES_INLINE lanes ray_part(const float at[3], const float dx[3], const float dy[3], int k, lanes x, float y)
+{
+    return at[k] + x * dx[k] + y * dy[k];
+}
+
+/* False: none of the eight receives light, and only `receives` is set. */
+LANES_INLINE bool receivers_at(const struct depth_job *job, const struct pixel *pixels, uint32_t x, uint32_t y,
+                               struct receivers *r)
+{
+    lane_ints geometric;
+    load_pixels(pixels, &geometric, &r->depth);
+    r->receives = r->depth > 0;
+    if (!lanes_bits(r->receives))
+        return false;
+    const struct pixel_rays *rays = &job->rays;
+    const float *light = job->light.light;
+    lanes fx = (float)x + (lanes){0, 1, 2, 3, 4, 5, 6, 7};
+    float fy = (float)y;
+    r->direction.x = ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 0, fx, fy);
+    r->direction.y = ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 1, fx, fy);
+    r->direction.z = ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 2, fx, fy);
+    r->point.x = ray_part(rays->origin, rays->origin_dx, rays->origin_dy, 0, fx, fy) + r->depth * r->direction.x;
+    r->point.y = ray_part(rays->origin, rays->origin_dx, rays->origin_dy, 1, fx, fy) + r->depth * r->direction.y;
+    r->point.z = ray_part(rays->origin, rays->origin_dx, rays->origin_dy, 2, fx, fy) + r->depth * r->direction.z;
+    r->v = (struct vector_lanes){lanes_all(light[0]), lanes_all(light[1]), lanes_all(light[2])};
+    if (job->light.kind != LIGHT_DIRECTIONAL) {
+        r->v.x -= r->point.x;
+        r->v.y -= r->point.y;
+        r->v.z -= r->point.z;
+    }
+    r->normal = unfold(geometric);
+    r->d2 = lanes_dot(&r->v, &r->v);
+    r->n_v = lanes_dot(&r->normal, &r->v);
+    r->n2 = lanes_dot(&r->normal, &r->normal);
+    r->receives &= (r->n_v > 0) & (r->d2 <= job->light.range2);
+    if (job->light.kind == LIGHT_SPOT)
+        r->receives &= -lanes_along(job->light.axis, &r->v) >= job->light.cosine * lanes_sqrt(r->d2);
+    return lanes_bits(r->receives) != 0;
+}
+
+/* struct MapPoint of shaders/maps.glsl. */
+struct map_points {
+    lane_ints on;      /* some map holds the point */
+    lane_ints map;     /* which; 0 where none does */
+    lanes x, y;        /* texels; 0 where none does */
+    lanes depth;       /* along the map's axis */
+    lanes texel;       /* world size of one there */
+    lanes near, range; /* of the map, and far - near */
+    lanes far;
+};
+
+LANES_INLINE void place_on(const struct depth_job *job, unsigned i, const struct vector_lanes *point, lane_ints open,
+                           struct map_points *m)
+{
+    const struct depth_map *map = &job->maps[i];
+    lanes qx = lanes_along(map->row[0], point) + map->row[0][3], qy = lanes_along(map->row[1], point) + map->row[1][3];
+    lanes depth = lanes_along(map->row[2], point) + map->row[2][3], texel = lanes_all(map->texel);
+    lane_ints before = lane_ints_all(-1);
+    if (!job->orthographic) {
+        lanes inverse = 1 / depth;
+        qx *= inverse;
+        qy *= inverse;
+        texel *= depth;
+        before = depth > 0;
+    }
+    lanes x = qx * map->scale_x + map->offset_x, y = qy * map->scale_y + map->offset_y, side = lanes_all((float)job->side);
+    lane_ints in = before & open & (x >= 0) & (y >= 0) & (x < side) & (y < side);
+    m->on |= in;
+    m->map |= in & lane_ints_all((int32_t)i);
+    m->x = lanes_pick(in, x, m->x);
+    m->y = lanes_pick(in, y, m->y);
+    m->depth = lanes_pick(in, depth, m->depth);
+    m->texel = lanes_pick(in, texel, m->texel);
+    m->near = lanes_pick(in, lanes_all(map->near), m->near);
+    m->range = lanes_pick(in, lanes_all(map->range), m->range);
+    m->far = lanes_pick(in, lanes_all(map->far), m->far);
+}
+
+/* The first map whose picture holds a receiver answers for it. */
+LANES_INLINE struct map_points map_points_of(const struct depth_job *job, const struct receivers *r)
+{
+    struct map_points m;
+    memset(&m, 0, sizeof m);
+    m.depth = lanes_all(1);
+    for (unsigned i = 0; i < job->map_count; i++) {
+        lane_ints open = r->receives & ~m.on;
+        if (!lanes_bits(open))
+            break;
+        place_on(job, i, &r->point, open, &m);
+    }
+    return m;
+}
+
+/* The depth that is compared: less the bias, constant + slope x texel x tangent of the angle of incidence. */
+LANES_INLINE lanes biased_depth(const struct depth_job *job, const struct receivers *r, const struct map_points *m)
+{
+    lanes tangent = lanes_sqrt(lanes_max(r->n2 * r->d2 / (r->n_v * r->n_v) - 1, lanes_all(0)));
+    return m->depth - (job->bias + job->slope * m->texel * tangent);
+}
+
+/* Index of texel (x, y) of each lane's map. */
+LANES_INLINE lane_ints texel_at(const struct depth_job *job, const struct map_points *m, lane_ints x, lane_ints y)
+{
+    return (m->map * job->side + y) * job->side + x;
+}
+
+/* Whether something lies before a point at `depth`: map_lit() of shaders/maps.glsl, the other way round. */
+LANES_INLINE lane_ints texel_blocks(const struct depth_job *job, lanes stored, lanes depth, lanes near, lanes range, lanes far)
+{
+    return job->orthographic ? (stored != 0) & (depth > far - stored * range) : stored * depth > near;
+}
+
+/* Eight pixels at (x, y), of which the picture may hold only some; those beyond have no surface. */
+LANES_INLINE const struct pixel *pixels_at(const struct depth_job *job, uint32_t x, uint32_t y, struct pixel room[LANES])
+{
+    const struct pixel *pixels = job->pixels + (size_t)y * job->width + x;
+    uint32_t count = job->width - x;
+    if (count >= LANES)
+        return pixels;
+    memset(room, 0, LANES * sizeof *room);
+    memcpy(room, pixels, count * sizeof *room);
+    return room;
+}
+
+LANES_INLINE void put_values(float *out, lanes values, uint32_t count)
+{
+    if (count >= LANES)
+        lanes_store(out, values);
+    else
+        for (uint32_t i = 0; i < count; i++)
+            out[i] = values[i];
+}
