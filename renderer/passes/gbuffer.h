@@ -26,17 +26,17 @@ struct gbuffer {
     struct gl_texture depth;    /* D32F; made when rasterizing */
     struct tiles tiles;         /* where there are surfaces; full-screen passes draw these */
     struct gl_target target;
-    uint32_t *cpu_ids;        /* width * height; valid if traced, else filled on request */
-    struct pixel *cpu_pixels; /* width * height; made when tracing */
-    size_t cpu_room;          /* pixels that these two have room for */
+    uint32_t *cpu_ids;         /* width * height; valid if traced, else filled on request */
+    struct pixel *cpu_pixels;  /* width * height; made when tracing */
+    size_t cpu_room;           /* pixels that these two have room for */
     struct pixel *read_pixels; /* width * height; made when asked for */
     size_t read_room;
     float *values; /* scratch, likewise */
     size_t value_room;
-    bool pixels_read;         /* read_pixels is the last picture's */
-    bool traced;              /* the last picture's producer */
-    bool ids_uploaded;        /* ids is the last picture's */
-    bool pixels_done;         /* pixels is the last picture's */
+    bool pixels_read;  /* read_pixels is the last picture's */
+    bool traced;       /* the last picture's producer */
+    bool ids_uploaded; /* ids is the last picture's */
+    bool pixels_done;  /* pixels is the last picture's */
 };
 
 /* Sizes everything for `view` and uploads its blocks. */

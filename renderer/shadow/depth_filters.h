@@ -42,8 +42,8 @@ LANES_INLINE int32_t square_inside(const struct depth_job *job, const struct one
     lane_ints dark = lane_ints_all(0);
     for (int j = 0; j < side; j++, row += job->side)
         for (int i = 0; i < side; i += LANES)
-            dark += texel_blocks(job, lanes_load(row + i), p->depth, p->near, p->range, p->far) &
-                    lane_ints_load(&s->weight[j][i]);
+            dark +=
+                texel_blocks(job, lanes_load(row + i), p->depth, p->near, p->range, p->far) & lane_ints_load(&s->weight[j][i]);
     return lane_ints_sum(dark);
 }
 
@@ -101,7 +101,8 @@ LANES_INLINE lanes filter_pixels(const struct depth_job *job, uint32_t x, uint32
     struct receivers r;
     if (!receivers_at(job, pixels_at(job, x, y, room), x, y, &r))
         return lanes_all(0);
-    struct map_points m = map_points_of(job, &r);
+    struct map_points m;
+    place_receivers(job, &r, &m);
     lanes lit = lanes_all(1);
     if (lanes_bits(m.on)) {
         lit = filtered(job, &m, biased_depth(job, &r, &m));
@@ -114,8 +115,9 @@ static void filter_rows(void *context, size_t index, unsigned worker)
 {
     (void)worker;
     const struct depth_job *job = context;
-    uint32_t y = job->top + (uint32_t)index * DEPTH_ROWS, end = y + DEPTH_ROWS < job->bottom ? y + DEPTH_ROWS : job->bottom;
-    for (; y < end; y++)
-        for (uint32_t x = 0; x < job->width; x += LANES)
-            put_values(job->visibility + (size_t)y * job->width + x, filter_pixels(job, x, y), job->width - x);
+    uint32_t top = job->top + (uint32_t)index * DEPTH_ROWS, bottom = lesser(top + DEPTH_ROWS, job->bottom);
+    for (uint32_t left = 0; left < job->width; left += DEPTH_COLUMNS)
+        for (uint32_t y = top, right = lesser(left + DEPTH_COLUMNS, job->width); y < bottom; y++)
+            for (uint32_t x = left; x < right; x += LANES)
+                put_values(job->visibility + (size_t)y * job->width + x, filter_pixels(job, x, y), job->width - x);
 }

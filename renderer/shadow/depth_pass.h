@@ -14,7 +14,10 @@
 
 struct pixel;
 
-enum { DEPTH_ROWS = 8 }; /* picture rows a job */
+enum {
+    DEPTH_ROWS = 16,    /* picture rows a job */
+    DEPTH_COLUMNS = 64, /* worked on together: what they read of a map stays near */
+};
 
 /* A map as maps_block has it (shaders/blocks.h). */
 struct depth_map {
@@ -61,8 +64,9 @@ struct depth_job {
 /* For job_pool_for(): job `index` of depth_job_count(). */
 typedef void depth_rows(void *job, size_t index, unsigned worker);
 struct depth_kernel {
-    depth_rows *filter;                               /* of struct depth_job */
-    depth_rows *soft_term, *soft_blur_x, *soft_blur_y; /* of struct soft_job (soft_pass.h), one after the other; the first: all rows */
+    depth_rows *filter; /* of struct depth_job */
+    depth_rows *soft_term, *soft_blur_x,
+        *soft_blur_y; /* of struct soft_job (soft_pass.h), one after the other; the first: all rows */
 };
 extern const struct depth_kernel depth_plain, depth_avx2; /* the latter empty where the compiler has none */
 

@@ -137,18 +137,17 @@ LANES_INLINE void place_on(const struct depth_job *job, unsigned i, const struct
 }
 
 /* The first map whose picture holds a receiver answers for it. */
-LANES_INLINE struct map_points map_points_of(const struct depth_job *job, const struct receivers *r)
+LANES_INLINE void place_receivers(const struct depth_job *job, const struct receivers *r, struct map_points *m)
 {
-    struct map_points m;
-    memset(&m, 0, sizeof m);
-    m.depth = lanes_all(1);
+    m->on = m->map = lane_ints_all(0);
+    m->x = m->y = m->texel = m->near = m->range = m->far = lanes_all(0);
+    m->depth = lanes_all(1);
     for (unsigned i = 0; i < job->map_count; i++) {
-        lane_ints open = r->receives & ~m.on;
+        lane_ints open = r->receives & ~m->on;
         if (!lanes_bits(open))
             break;
-        place_on(job, i, &r->point, open, &m);
+        place_on(job, i, &r->point, open, m);
     }
-    return m;
 }
 
 /* The depth that is compared: less the bias, constant + slope x texel x tangent of the angle of incidence. */
@@ -170,11 +169,16 @@ LANES_INLINE lane_ints texel_blocks(const struct depth_job *job, lanes stored, l
     return job->orthographic ? (stored != 0) & (depth > far - stored * range) : stored * depth > near;
 }
 
+LANES_INLINE uint32_t lesser(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
 /* Eight pixels at (x, y), of which the picture may hold only some; those beyond have no surface. */
 LANES_INLINE const struct pixel *pixels_at(const struct depth_job *job, uint32_t x, uint32_t y, struct pixel room[LANES])
 {
     const struct pixel *pixels = job->pixels + (size_t)y * job->width + x;
     uint32_t count = job->width - x;
+    /* The next row's, or past the end: no harm. */
+    __builtin_prefetch(pixels + job->width);
+    __builtin_prefetch(pixels + job->width + LANES / 2);
     if (count >= LANES)
         return pixels;
     memset(room, 0, LANES * sizeof *room);

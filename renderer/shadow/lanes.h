@@ -41,7 +41,10 @@ LANES_INLINE lanes lanes_max(lanes a, lanes b) { return _mm256_max_ps(a, b); }
 LANES_INLINE lanes lanes_sqrt(lanes a) { return _mm256_sqrt_ps(a); }
 /* A bit a lane. */
 LANES_INLINE unsigned lanes_bits(lane_ints mask) { return (unsigned)_mm256_movemask_ps((__m256)mask); }
-LANES_INLINE lanes lanes_gather(const float *p, lane_ints at) { return _mm256_i32gather_ps(p, (__m256i)at, 4); }
+LANES_INLINE lanes lanes_gather(const float *p, lane_ints at)
+{
+    return (lanes){p[at[0]], p[at[1]], p[at[2]], p[at[3]], p[at[4]], p[at[5]], p[at[6]], p[at[7]]};
+}
 
 #else
 
@@ -83,10 +86,7 @@ LANES_INLINE lane_ints lane_ints_gather(const void *p, lane_ints at) { return (l
 LANES_INLINE lane_ints lane_ints_min(lane_ints a, lane_ints b) { return lane_ints_pick(a < b, a, b); }
 LANES_INLINE lane_ints lane_ints_max(lane_ints a, lane_ints b) { return lane_ints_pick(a > b, a, b); }
 
-LANES_INLINE int32_t lane_ints_sum(lane_ints a)
-{
-    return a[0] + a[1] + a[2] + a[3] + a[4] + a[5] + a[6] + a[7];
-}
+LANES_INLINE int32_t lane_ints_sum(lane_ints a) { return a[0] + a[1] + a[2] + a[3] + a[4] + a[5] + a[6] + a[7]; }
 
 /* |a| < 2^31. */
 LANES_INLINE lanes lanes_floor(lanes a)

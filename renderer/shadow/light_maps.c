@@ -186,7 +186,8 @@ bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct
 size_t light_maps_bytes(const void *maps)
 {
     const struct light_maps *m = maps;
-    return m->depth.bytes + m->texel_room * sizeof *m->texels + m->draw.rows.size + m->draw.commands.size + m->draw.block.size + m->block.size;
+    return m->depth.bytes + m->texel_room * sizeof *m->texels + m->draw.rows.size + m->draw.commands.size + m->draw.block.size +
+           m->block.size;
 }
 
 void light_maps_finish(void *maps)

@@ -13,8 +13,9 @@
 #define LIGHT_MAPS_PAST 8
 
 struct light_maps {
-    struct gl_texture depth; /* D32F array, a layer a map; encoding: shaders/maps.glsl. On the CPU: one layer, if rasterized; else nothing */
-    float *texels;           /* on the CPU: all maps, row 0 at the top, else NULL; owned */
+    struct gl_texture
+        depth; /* D32F array, a layer a map; encoding: shaders/maps.glsl. On the CPU: one layer, if rasterized; else nothing */
+    float *texels; /* on the CPU: all maps, row 0 at the top, else NULL; owned */
     size_t texel_room;
     struct gl_target target;
     struct draw_view draw;

@@ -299,8 +299,8 @@ static void finish(void *state)
 static size_t bytes(const void *state)
 {
     const struct mask *s = state;
-    size_t sum = sizeof s->table.bits + light_maps_bytes(&s->maps) + s->adjacency.count * sizeof *s->adjacency.across +
-                 s->pixel_room * 12;
+    size_t sum =
+        sizeof s->table.bits + light_maps_bytes(&s->maps) + s->adjacency.count * sizeof *s->adjacency.across + s->pixel_room * 12;
     for (unsigned i = 0; i < s->count; i++)
         sum += s->contours[i].bytes;
     return sum;

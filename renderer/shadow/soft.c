@@ -167,8 +167,8 @@ static void finish(void *state)
 static size_t bytes(const void *state)
 {
     const struct soft *s = state;
-    return light_maps_bytes(&s->maps) + soft_pass_bytes(&s->on_cpu) + map_ranges_bytes(&s->ranges) + s->term.bytes + s->radius.bytes + s->blurred.bytes +
-           s->block.size;
+    return light_maps_bytes(&s->maps) + soft_pass_bytes(&s->on_cpu) + map_ranges_bytes(&s->ranges) + s->term.bytes +
+           s->radius.bytes + s->blurred.bytes + s->block.size;
 }
 
 const struct shadow_system shadow_soft = {

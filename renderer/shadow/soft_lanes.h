@@ -18,19 +18,19 @@ LANES_INLINE lanes term_guide(lane_ints term) { return (lanes)(term & ~SOFT_TERM
 /* Eight receivers on their maps, with what the search needs. */
 struct soft_points {
     const struct soft_job *job;
-    struct map_points m;
+    const struct map_points *m;
     lanes own;              /* what the receiver would store, bias taken off */
     lanes slope_x, slope_y; /* of that, a texel, over the receiver's plane */
 };
 
 LANES_INLINE lanes depth_of(const struct soft_points *p, lanes stored)
 {
-    return p->job->depth.orthographic ? p->m.far - stored * p->m.range : p->m.near / stored;
+    return p->job->depth.orthographic ? p->m->far - stored * p->m->range : p->m->near / stored;
 }
 
 LANES_INLINE lanes blur_radius(const struct soft_points *p, lanes depth)
 {
-    lanes away = (p->m.depth - depth) / (p->job->depth.orthographic ? p->m.range : depth);
+    lanes away = (p->m->depth - depth) / (p->job->depth.orthographic ? p->m->range : depth);
     return p->job->settings.radius * lanes_min(lanes_max(away, lanes_all(0)), lanes_all(p->job->settings.far));
 }
 
@@ -44,7 +44,7 @@ LANES_INLINE lanes own_stored(const struct depth_job *job, const struct receiver
 LANES_INLINE void plane_slopes(struct soft_points *p, const struct receivers *r)
 {
     const struct depth_job *job = &p->job->depth;
-    const struct map_points *m = &p->m;
+    const struct map_points *m = p->m;
     p->slope_x = p->slope_y = lanes_all(0);
     for (unsigned i = 0; i < job->map_count; i++) {
         const struct depth_map *map = &job->maps[i];
@@ -56,8 +56,9 @@ LANES_INLINE void plane_slopes(struct soft_points *p, const struct receivers *r)
         if (job->orthographic)
             scale = 1 / (nz * m->range);
         else
-            scale = m->near / (m->depth * (nx * ((m->x - map->offset_x) / map->scale_x) +
-                                           ny * ((m->y - map->offset_y) / map->scale_y) + nz));
+            scale =
+                m->near /
+                (m->depth * (nx * ((m->x - map->offset_x) / map->scale_x) + ny * ((m->y - map->offset_y) / map->scale_y) + nz));
         p->slope_x = lanes_pick(here, scale * nx / map->scale_x, p->slope_x);
         p->slope_y = lanes_pick(here, scale * ny / map->scale_y, p->slope_y);
     }
@@ -76,10 +77,9 @@ struct found {
 LANES_INLINE lanes look_at(const struct soft_points *p, lanes x, lanes y, lane_ints wanted, struct found *f)
 {
     const struct depth_job *job = &p->job->depth;
-    lane_ints at =
-        texel_at(job, &p->m, clamped(lanes_truncate(x), job->side - 1), clamped(lanes_truncate(y), job->side - 1));
+    lane_ints at = texel_at(job, p->m, clamped(lanes_truncate(x), job->side - 1), clamped(lanes_truncate(y), job->side - 1));
     lanes stored = lanes_gather(job->texels, at);
-    lanes plane = p->own + p->slope_x * (x + 0.5f - p->m.x) + p->slope_y * (y + 0.5f - p->m.y);
+    lanes plane = p->own + p->slope_x * (x + 0.5f - p->m->x) + p->slope_y * (y + 0.5f - p->m->y);
     lanes hit = lanes_if(wanted & (stored > lanes_max(plane, lanes_all(0))), lanes_all(1));
     f->sum += hit * stored;
     f->count += hit;
@@ -89,10 +89,10 @@ LANES_INLINE lanes look_at(const struct soft_points *p, lanes x, lanes y, lane_i
 /* Four texels, interpolated: the term's own edge is one texel wide. */
 LANES_INLINE lanes darkness(const struct soft_points *p, struct found *f)
 {
-    lanes x = lanes_floor(p->m.x - 0.5f), y = lanes_floor(p->m.y - 0.5f);
-    lanes u = p->m.x - 0.5f - x, v = p->m.y - 0.5f - y;
-    lanes a = look_at(p, x, y, p->m.on, f), b = look_at(p, x + 1, y, p->m.on, f);
-    lanes c = look_at(p, x, y + 1, p->m.on, f), d = look_at(p, x + 1, y + 1, p->m.on, f);
+    lanes x = lanes_floor(p->m->x - 0.5f), y = lanes_floor(p->m->y - 0.5f);
+    lanes u = p->m->x - 0.5f - x, v = p->m->y - 0.5f - y;
+    lanes a = look_at(p, x, y, p->m->on, f), b = look_at(p, x + 1, y, p->m->on, f);
+    lanes c = look_at(p, x, y + 1, p->m->on, f), d = look_at(p, x + 1, y + 1, p->m->on, f);
     return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
@@ -101,7 +101,7 @@ LANES_INLINE void search(const struct soft_points *p, lane_ints wanted, lanes re
     for (int i = 0; i < SOFT_SEARCH * SOFT_SEARCH; i++) {
         float dx = (float)(i % SOFT_SEARCH) * (2.0f / (SOFT_SEARCH - 1)) - 1;
         float dy = (float)(i / SOFT_SEARCH) * (2.0f / (SOFT_SEARCH - 1)) - 1;
-        look_at(p, lanes_floor(p->m.x + dx * reach), lanes_floor(p->m.y + dy * reach), wanted, f);
+        look_at(p, lanes_floor(p->m->x + dx * reach), lanes_floor(p->m->y + dy * reach), wanted, f);
     }
 }
 
@@ -128,7 +128,7 @@ LANES_INLINE lanes step_length(const struct soft_job *job, const struct receiver
 LANES_INLINE lanes soft_term(const struct soft_job *job, const struct receivers *r, const struct map_points *m, lanes sigma[2])
 {
     const struct soft_pass *s = job->pass;
-    struct soft_points p = {.job = job, .m = *m, .own = own_stored(&job->depth, r, m)};
+    struct soft_points p = {.job = job, .m = m, .own = own_stored(&job->depth, r, m)};
     struct found found = {lanes_all(0), lanes_all(0)};
     int32_t blocks = (int32_t)s->blocks;
     lanes zero = lanes_all(0), block = lanes_all((float)s->block), near = lanes_all(job->settings.near);
@@ -147,7 +147,8 @@ LANES_INLINE lanes soft_term(const struct soft_job *job, const struct receivers 
     wanted &= any;
     if (lanes_bits(wanted))
         for (int axis = 0; axis < 2; axis++)
-            sigma[axis] = lanes_if(wanted, lanes_min(lanes_max(0.5f * across / step_length(job, r, axis), near), lanes_all(1000)));
+            sigma[axis] =
+                lanes_if(wanted, lanes_min(lanes_max(0.5f * across / step_length(job, r, axis), near), lanes_all(1000)));
     float most = job->settings.radius * job->settings.far, scale = job->settings.lift / (most > 1e-30f ? most : 1e-30f);
     return 1 - dark * (1 - scale * across);
 }
@@ -159,7 +160,8 @@ LANES_INLINE lane_ints soft_pixels(const struct soft_job *job, uint32_t x, uint3
     sigma[0] = sigma[1] = lanes_all(0);
     if (!receivers_at(&job->depth, pixels_at(&job->depth, x, y, room), x, y, &r))
         return lane_ints_all(0);
-    struct map_points m = map_points_of(&job->depth, &r);
+    struct map_points m;
+    place_receivers(&job->depth, &r, &m);
     lanes lit = lanes_all(1);
     if (lanes_bits(m.on))
         lit = lanes_pick(m.on, soft_term(job, &r, &m, sigma), lit);
@@ -175,35 +177,47 @@ LANES_INLINE void put_ints(uint32_t *out, lane_ints values, uint32_t count)
             out[i] = (uint32_t)values[i];
 }
 
+LANES_INLINE void put_term(const struct soft_job *job, uint32_t x, uint32_t y)
+{
+    size_t at = (size_t)y * job->depth.width + x;
+    uint32_t count = job->depth.width - x;
+    lanes sigma[2];
+    put_ints(job->pass->terms + at, soft_pixels(job, x, y, sigma), count);
+    put_values(job->pass->sigmas[0] + at, sigma[0], count);
+    put_values(job->pass->sigmas[1] + at, sigma[1], count);
+}
+
+static inline void clear_row(struct soft_pass *s, uint32_t y, uint32_t width)
+{
+    memset(s->terms + (size_t)y * width, 0, width * sizeof *s->terms);
+    memset(s->blurred + (size_t)y * width, 0, width * sizeof *s->blurred);
+}
+
 /* All rows: taps reach into those without surfaces. */
 static void soft_term_rows(void *context, size_t index, unsigned worker)
 {
     (void)worker;
     const struct soft_job *job = context;
     const struct depth_job *d = &job->depth;
-    uint32_t y = (uint32_t)index * DEPTH_ROWS, end = y + DEPTH_ROWS < d->height ? y + DEPTH_ROWS : d->height;
-    for (; y < end; y++) {
-        size_t row = (size_t)y * d->width;
-        if (y < d->top || y >= d->bottom) {
-            memset(job->pass->terms + row, 0, d->width * sizeof *job->pass->terms);
-            memset(job->pass->blurred + row, 0, d->width * sizeof *job->pass->blurred);
-            continue;
-        }
-        for (uint32_t x = 0; x < d->width; x += LANES) {
-            lanes sigma[2];
-            put_ints(job->pass->terms + row + x, soft_pixels(job, x, y, sigma), d->width - x);
-            put_values(job->pass->sigmas[0] + row + x, sigma[0], d->width - x);
-            put_values(job->pass->sigmas[1] + row + x, sigma[1], d->width - x);
-        }
-    }
+    uint32_t top = (uint32_t)index * DEPTH_ROWS, bottom = lesser(top + DEPTH_ROWS, d->height);
+    for (uint32_t y = top; y < bottom; y++)
+        if (y < d->top || y >= d->bottom)
+            clear_row(job->pass, y, d->width);
+    top = top > d->top ? top : d->top;
+    bottom = lesser(bottom, d->bottom);
+    for (uint32_t left = 0; left < d->width; left += DEPTH_COLUMNS)
+        for (uint32_t y = top, right = lesser(left + DEPTH_COLUMNS, d->width); y < bottom; y++)
+            for (uint32_t x = left; x < right; x += LANES)
+                put_term(job, x, y);
 }
 
 /* 2^x for x in [-126, 0], within 2^-22: Taylor's series around the nearest whole number. */
 LANES_INLINE lanes exp2_lanes(lanes x)
 {
     lanes whole = lanes_floor(lanes_max(x, lanes_all(-126)) + 0.5f), f = x - whole;
-    lanes p = 1 + f * (0.693147181f +
-                       f * (0.240226507f + f * (0.0555041087f + f * (0.00961812911f + f * (0.00133335581f + f * 1.54035304e-4f)))));
+    lanes p =
+        1 + f * (0.693147181f +
+                 f * (0.240226507f + f * (0.0555041087f + f * (0.00961812911f + f * (0.00133335581f + f * 1.54035304e-4f)))));
     return p * (lanes)((lanes_truncate(whole) + 127) << 23);
 }
 
@@ -281,7 +295,8 @@ LANES_INLINE lanes blur_pixels(const struct soft_job *job, int axis, const uint3
         return value;
     b.slope = guide_slope(&b, x, y);
     b.here = axis == 0 ? column : lanes_all((float)y);
-    b.row = axis == 0 ? lane_ints_all((int32_t)(y * d->width)) : lane_ints_min(lanes_truncate(column), lane_ints_all((int32_t)d->width - 1));
+    b.row = axis == 0 ? lane_ints_all((int32_t)(y * d->width))
+                      : lane_ints_min(lanes_truncate(column), lane_ints_all((int32_t)d->width - 1));
     return lanes_pick(b.sigma > 0, blur_lanes(&b, value), value);
 }
 
@@ -299,8 +314,8 @@ LANES_INLINE void blur_rows(const struct soft_job *job, size_t index, int axis)
 {
     const struct depth_job *d = &job->depth;
     const uint32_t *from = axis == 0 ? job->pass->terms : job->pass->blurred;
-    uint32_t y = d->top + (uint32_t)index * DEPTH_ROWS, end = y + DEPTH_ROWS < d->bottom ? y + DEPTH_ROWS : d->bottom;
-    for (; y < end; y++)
+    uint32_t top = d->top + (uint32_t)index * DEPTH_ROWS, bottom = lesser(top + DEPTH_ROWS, d->bottom);
+    for (uint32_t y = top; y < bottom; y++)
         for (uint32_t x = 0; x < d->width; x += LANES) {
             size_t at = (size_t)y * d->width + x;
             lane_ints own = own_terms(from + at, d->width - x);

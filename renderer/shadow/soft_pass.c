@@ -124,10 +124,8 @@ bool soft_pass_resolve(struct soft_pass *s, const struct light_maps *maps, const
                        const struct soft_settings *settings, struct error *err)
 {
     const struct view *v = in->view;
-    struct soft_job job = {.settings = *settings,
-                           .pass = s,
-                           .parallel = v->orthographic,
-                           .grain = (float)((v->top - v->bottom) / v->height)};
+    struct soft_job job = {
+        .settings = *settings, .pass = s, .parallel = v->orthographic, .grain = (float)((v->top - v->bottom) / v->height)};
     const struct depth_kernel *kernel = depth_kernel_choose();
     if (!reserve(s, (size_t)v->width * v->height, err) || !depth_job_init(&job.depth, maps, in, err))
         return false;
