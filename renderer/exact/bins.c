@@ -45,12 +45,15 @@ static void project(void *context, size_t chunk, unsigned worker)
         double z = dvec3_dot(d, v->forward), k = v->orthographic ? 1 : 1 / z;
         double x = (dvec3_dot(d, v->right) * k - v->left) * sx, y = (dvec3_dot(d, v->up) * k - v->top) * sy;
         bool ok = z >= front;
+        /* The axes are unit and orthogonal to within some roundings only. */
+        double room = 0x1p-30 * (fabs(d.x) + fabs(d.y) + fabs(d.z)), nearest = z - room;
         f->bins->corners[i][0] = ok ? (float)x : NAN;
         f->bins->corners[i][1] = ok ? (float)y : NAN;
+        f->bins->corners[i][2] = v->orthographic ? box_above(-nearest) : nearest > 0 ? box_above(1 / nearest) : INFINITY;
     }
 }
 
-static const struct bin_range nowhere = {1, 0, 1, 0};
+static const struct bin_range nowhere = {1, 0, 1, 0, 0};
 
 /* First and last tile that [low, high] in pixels meets; false: none of `count`. */
 static bool tile_span(float low, float high, uint32_t pixels, uint16_t *first, uint16_t *last)
@@ -122,7 +125,7 @@ static struct bin_range range_of(const struct filling *f, uint32_t id)
     const struct triangles *t = f->triangles;
     const float *a = f->bins->corners[t->corners[id][0]], *b = f->bins->corners[t->corners[id][1]],
                 *c = f->bins->corners[t->corners[id][2]];
-    struct bin_range r;
+    struct bin_range r = {.nearest = INFINITY};
     float box[4];
     if (t->flags[id] & TRIANGLE_IGNORED)
         return nowhere;
@@ -134,6 +137,7 @@ static struct bin_range range_of(const struct filling *f, uint32_t id)
     } else {
         if (is_hidden(f, t->flags[id], a, b, c))
             return nowhere;
+        r.nearest = box_max(box_max(a[2], b[2]), c[2]);
         box[0] = box_min(box_min(a[0], b[0]), c[0]), box[1] = box_max(box_max(a[0], b[0]), c[0]);
         box[2] = box_min(box_min(a[1], b[1]), c[1]), box[3] = box_max(box_max(a[1], b[1]), c[1]);
     }
@@ -173,22 +177,25 @@ static void fill_chunk(void *context, size_t chunk, unsigned worker)
             continue;
         for (uint32_t y = r.top; y <= r.bottom; y++)
             for (uint32_t x = r.left; x <= r.right; x++)
-                b->entries[cursor[y * b->columns + x]++] = id;
+                b->entries[cursor[y * b->columns + x]++] = (struct bin_entry){id, r.nearest};
     }
 }
 
 static bool place_chunks(struct bins *b)
 {
     uint32_t tiles = b->columns * b->rows;
-    uint64_t total = 0;
+    uint64_t total = 0, most = 0;
     for (uint32_t tile = 0; tile < tiles; tile++) {
+        uint64_t before = total;
         b->first[tile] = (uint32_t)total;
         for (size_t chunk = 0; chunk < CHUNKS; chunk++) {
             uint32_t count = b->counts[chunk * tiles + tile];
             b->counts[chunk * tiles + tile] = (uint32_t)total;
             total += count;
         }
+        most = total - before > most ? total - before : most;
     }
+    b->most = (uint32_t)most;
     b->first[tiles] = (uint32_t)total;
     return total < UINT32_MAX && grow(&b->entries, &b->entry_room, (size_t)total + 1, sizeof *b->entries);
 }

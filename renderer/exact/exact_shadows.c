@@ -34,6 +34,13 @@ struct exact_shadows *exact_shadows_create(const struct scene *scene, size_t mem
     return e;
 }
 
+static void free_scratch(struct exact_shadows *e)
+{
+    for (unsigned i = 0; i < e->scratch_count; i++)
+        free(e->scratch[i].order);
+    free(e->scratch);
+}
+
 void exact_shadows_destroy(struct exact_shadows *e)
 {
     if (!e)
@@ -41,7 +48,7 @@ void exact_shadows_destroy(struct exact_shadows *e)
     triangles_finish(&e->triangles);
     light_grid_finish(&e->grid);
     bins_finish(&e->bins);
-    free(e->scratch);
+    free_scratch(e);
     free(e->visibility);
     free(e->receivers);
     free(e->lit);
@@ -89,11 +96,29 @@ static bool reserve(struct exact_shadows *e, size_t pixels, bool masks, unsigned
         e->mask_room = e->receivers && e->lit ? pixels : 0;
     }
     if (e->scratch_count < threads) {
-        free(e->scratch);
+        free_scratch(e);
         e->scratch = aligned_alloc(64, (threads * sizeof *e->scratch + 63) / 64 * 64);
         e->scratch_count = e->scratch ? threads : 0;
+        for (unsigned i = 0; i < e->scratch_count; i++)
+            e->scratch[i].order = NULL, e->scratch[i].order_room = 0;
     }
     return e->pixel_room >= pixels && (!masks || e->mask_room >= pixels) && e->scratch_count;
+}
+
+/* Entries of a tile are put in order there. */
+static bool reserve_order(struct exact_shadows *e)
+{
+    for (unsigned i = 0; i < e->scratch_count; i++) {
+        struct tile_scratch *s = &e->scratch[i];
+        if (s->order_room >= e->bins.most && s->order)
+            continue;
+        free(s->order);
+        s->order = malloc(((size_t)e->bins.most + 1) * sizeof *s->order);
+        s->order_room = s->order ? e->bins.most : 0;
+        if (!s->order)
+            return false;
+    }
+    return true;
 }
 
 /* What was kept of triangles is for another camera or light. */
@@ -103,6 +128,8 @@ static void scratch_begin(struct tile_scratch *s, const struct tile_job *job)
         s->x[i] = view_samples32[i][0];
         s->y[i] = view_samples32[i][1];
     }
+    for (int i = 0; i < TILE_SIDE; i++)
+        s->column[i] = (float)i;
     for (int i = 0; i < OCCLUDERS_KEPT; i++)
         s->occluders[i].id = SCENE_NONE;
     for (int i = 0; i < MASKED_KEPT; i++)
@@ -171,7 +198,7 @@ const float *exact_shadows_samples32(struct exact_shadows *e, const struct view 
                                      const uint32_t **receivers, const uint32_t **lit, struct error *err)
 {
     if (!reserve(e, (size_t)view->width * view->height, true, job_pool_threads(pool)) ||
-        !bins_fill(&e->bins, &e->triangles, view, pool))
+        !bins_fill(&e->bins, &e->triangles, view, pool) || !reserve_order(e))
         return out_of_memory(err);
     struct tile_job job = job_for(e, view);
     job.bins = &e->bins;

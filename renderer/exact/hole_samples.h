@@ -24,8 +24,8 @@ enum { HOLE_OPEN, HOLE_SOLID, HOLE_UNSURE, HOLE_WRAPPED };
 /* c without the lines' error: `s` and `d` sums of absolute components. */
 static inline double hole_error(const struct masked *m, double s, double d, double point)
 {
-    return 1.2 * ((HOLE_ROUNDING * s * d + point * (s + d + point)) * (m->e1 + m->e2) +
-                  (HOLE_ROUNDING * d + point) * m->e1 * m->e2);
+    return 1.2 *
+           ((HOLE_ROUNDING * s * d + point * (s + d + point)) * (m->e1 + m->e2) + (HOLE_ROUNDING * d + point) * m->e1 * m->e2);
 }
 
 static inline int32_t hole_texel(double position)
@@ -77,8 +77,8 @@ static inline void hole_samples(const struct tile_scratch *scratch, const struct
     *unsure &= wanted;
     for (wrapped &= wanted; wrapped; wrapped &= wrapped - 1) {
         unsigned i = (unsigned)__builtin_ctz(wrapped);
-        *solid |= (uint32_t)hole_mask_at(m, texture_wrap(column[i], m->width, m->wrap_s),
-                                         texture_wrap(row[i], m->height, m->wrap_t))
-                  << i;
+        *solid |=
+            (uint32_t)hole_mask_at(m, texture_wrap(column[i], m->width, m->wrap_s), texture_wrap(row[i], m->height, m->wrap_t))
+            << i;
     }
 }

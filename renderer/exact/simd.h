@@ -14,6 +14,8 @@ static inline wide wide_load(const float *p) { return _mm512_loadu_ps(p); }
 static inline wide wide_add(wide a, wide b) { return _mm512_add_ps(a, b); }
 static inline wide wide_sub(wide a, wide b) { return _mm512_sub_ps(a, b); }
 static inline wide wide_mul(wide a, wide b) { return _mm512_mul_ps(a, b); }
+static inline wide wide_min(wide a, wide b) { return _mm512_min_ps(a, b); }
+static inline float wide_least(wide a) { return _mm512_reduce_min_ps(a); }
 static inline unsigned wide_above(wide a, wide b) { return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ); }
 static inline unsigned wide_same(const uint32_t *p, uint32_t x)
 {
@@ -33,6 +35,13 @@ static inline wide wide_load(const float *p) { return _mm256_loadu_ps(p); }
 static inline wide wide_add(wide a, wide b) { return _mm256_add_ps(a, b); }
 static inline wide wide_sub(wide a, wide b) { return _mm256_sub_ps(a, b); }
 static inline wide wide_mul(wide a, wide b) { return _mm256_mul_ps(a, b); }
+static inline wide wide_min(wide a, wide b) { return _mm256_min_ps(a, b); }
+static inline float wide_least(wide a)
+{
+    __m128 x = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+    x = _mm_min_ps(x, _mm_movehl_ps(x, x));
+    return _mm_cvtss_f32(_mm_min_ss(x, _mm_movehdup_ps(x)));
+}
 static inline unsigned wide_above(wide a, wide b) { return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_GT_OQ)); }
 static inline unsigned wide_same(const uint32_t *p, uint32_t x)
 {
@@ -57,6 +66,8 @@ static inline wide wide_load(const float *p) { return *p; }
 static inline wide wide_add(wide a, wide b) { return a + b; }
 static inline wide wide_sub(wide a, wide b) { return a - b; }
 static inline wide wide_mul(wide a, wide b) { return a * b; }
+static inline wide wide_min(wide a, wide b) { return a < b ? a : b; }
+static inline float wide_least(wide a) { return a; }
 static inline unsigned wide_above(wide a, wide b) { return a > b; }
 static inline unsigned wide_same(const uint32_t *p, uint32_t x) { return *p == x; }
 static inline void wide_put(float *p, wide x, unsigned lanes)

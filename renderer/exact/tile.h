@@ -79,12 +79,16 @@ struct tile_scratch {
     float key[TILE_PIXELS][32];
     uint32_t id[TILE_PIXELS][32];
     float key_error[TILE_PIXELS]; /* of any key of the pixel */
+    float farthest[TILE_PIXELS];  /* not more than any key of the pixel; INFINITY outside the picture */
+    float column[TILE_SIDE];      /* 0, 1, 2 ... */
     struct occluder occluders[OCCLUDERS_KEPT];
     struct masked masked[MASKED_KEPT]; /* of occluders */
     struct masked shown_mask;
     struct receiver seen[RECEIVERS_KEPT];
     struct slow slow;
     struct tile_counts counts;
+    struct bin_entry *order; /* of a tile: room for bins.most */
+    size_t order_room;
 };
 
 typedef void tile_function(void *job, size_t index, unsigned worker);

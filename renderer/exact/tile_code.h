@@ -63,10 +63,11 @@ static inline struct tile_pixel pixel_in_order(uint32_t i)
                                block / BLOCKS_PER_ROW * BLOCK_SIDE + i % inside / BLOCK_SIDE};
 }
 
-static inline void tile_clear(struct tile_scratch *s)
+static inline void tile_clear(struct tile_scratch *s, uint32_t width, uint32_t height)
 {
-    for (int p = 0; p < TILE_PIXELS; p++) {
+    for (uint32_t p = 0; p < TILE_PIXELS; p++) {
         s->key_error[p] = 0;
+        s->farthest[p] = p % TILE_SIDE < width && p / TILE_SIDE < height ? -INFINITY : INFINITY;
         for (int i = 0; i < 32; i++) {
             s->key[p][i] = -INFINITY;
             s->id[p][i] = SCENE_NONE;
@@ -83,11 +84,12 @@ static inline void tile_samples32(void *context, size_t index, unsigned worker)
     uint32_t x0 = (uint32_t)(index % bins->columns) * TILE_SIDE, y0 = (uint32_t)(index / bins->columns) * TILE_SIDE;
     uint32_t width = view->width - x0 < TILE_SIDE ? view->width - x0 : TILE_SIDE,
              height = view->height - y0 < TILE_SIDE ? view->height - y0 : TILE_SIDE;
-    bool empty = bins->first[index] == bins->first[index + 1];
-    if (!empty)
-        tile_clear(s);
-    for (uint32_t i = bins->first[index]; i < bins->first[index + 1]; i++)
-        show(s, job, bins->entries[i], x0, y0, width, height);
+    uint32_t first = bins->first[index], count = bins->first[index + 1] - first;
+    bool empty = count == 0;
+    if (!empty) {
+        tile_clear(s, width, height);
+        show_all(s, job, bins->entries + first, count, x0, y0, width, height);
+    }
     for (uint32_t i = 0; i < TILE_PIXELS; i++) {
         uint32_t x = pixel_in_order(i).x, y = pixel_in_order(i).y, lit = 0;
         if (x >= width || y >= height)

@@ -2,6 +2,8 @@
  * linear in the picture. */
 #pragma once
 
+#include <string.h>
+
 #include "exact/blocked.h"
 
 /* A triangle being put into a tile. */
@@ -74,6 +76,14 @@ struct contest {
     float keys[32], error;
 };
 
+static inline void update_farthest(struct tile_scratch *s, uint32_t pixel)
+{
+    wide least = wide_load(s->key[pixel]);
+    for (int i = WIDTH; i < 32; i += WIDTH)
+        least = wide_min(least, wide_load(s->key[pixel] + i));
+    s->farthest[pixel] = less(wide_least(least), s->key_error[pixel]);
+}
+
 /* Samples of `bits` that the triangle has now, decided one by one. */
 static inline void show_slowly(struct tile_scratch *s, const struct tile_job *job, const struct shown *t, uint32_t pixel,
                                uint32_t x, uint32_t y, uint32_t bits, const struct contest *c)
@@ -94,6 +104,7 @@ static inline void show_slowly(struct tile_scratch *s, const struct tile_job *jo
         if (!(c->error <= s->key_error[pixel]))
             s->key_error[pixel] = c->error;
     }
+    update_farthest(s, pixel);
 }
 
 /* True when all keys from `low` to `high` are certainly those of points between near and far. */
@@ -127,6 +138,8 @@ static inline uint32_t show_solid(struct tile_scratch *s, const struct tile_job 
     }
     if (solid && !(c->error <= s->key_error[pixel]))
         s->key_error[pixel] = c->error;
+    if (solid)
+        update_farthest(s, pixel);
     return unsure;
 }
 
@@ -168,8 +181,10 @@ static inline void show_in_pixel(struct tile_scratch *s, const struct tile_job *
         wide_put(s->key[pixel] + i, value, take & ((1ull << WIDTH) - 1));
         wide_put_id(s->id[pixel] + i, t->id, take & ((1ull << WIDTH) - 1));
     }
-    if (plain && (nearer & sure.inside))
+    if (plain && (nearer & sure.inside)) {
         s->key_error[pixel] = error;
+        update_farthest(s, pixel);
+    }
     contest.crossed = sure.inside;
     contest.won = between ? sure.inside & nearer : 0;
     contest.error = error;
@@ -190,21 +205,112 @@ static inline void pixel_span(float low, float high, uint32_t begin, uint32_t le
     *to = high < (float)(begin + length) ? high > (float)begin ? (uint32_t)high - begin + 1 : 0 : length;
 }
 
-static inline void show(struct tile_scratch *s, const struct tile_job *job, uint32_t id, uint32_t x0, uint32_t y0, uint32_t width,
-                        uint32_t height)
+/* Lines that bound a triangle from outside, over a tile's pixels: c + x vx + y vy < 0 where the pixel at (x, y) certainly is out. */
+struct outline {
+    float c[3], vx[3], vy[3];
+};
+
+static inline void outline_make(struct outline *o, const struct shown *t, double x0, double y0)
 {
-    const struct triangles *t = job->triangles;
-    const float *a = job->bins->corners[t->corners[id][0]], *b = job->bins->corners[t->corners[id][1]],
-                *c = job->bins->corners[t->corners[id][2]];
+    for (int k = 0; k < 3; k++) {
+        double vx = t->vx[k], vy = t->vy[k], rise = (vx > 0 ? vx : 0) + (vy > 0 ? vy : 0);
+        double c = t->v[k] + x0 * vx + y0 * vy + rise;
+        /* At most 2^-22 of this is rounding, of the coefficients to single precision and of two products and sums. */
+        double room = 0x1p-19 * (fabs(c) + TILE_SIDE * (fabs(vx) + fabs(vy)));
+        o->c[k] = t->certain ? (float)(c + room + t->error[k] + SINGLE_UNDERFLOW) : 1;
+        o->vx[k] = t->certain ? (float)vx : 0;
+        o->vy[k] = t->certain ? (float)vy : 0;
+    }
+}
+
+/* Bit a pixel of a tile's row: the triangle may have samples there. */
+static inline uint32_t row_met(const struct tile_scratch *s, const struct outline *o, float nearest, uint32_t y)
+{
+    uint32_t out = 0;
+    for (int i = 0; i < TILE_SIDE; i += WIDTH) {
+        wide x = wide_load(s->column + i);
+        unsigned apart = wide_above(wide_load(s->farthest + y * TILE_SIDE + i), wide_all(nearest));
+        for (int k = 0; k < 3; k++)
+            apart |= wide_above(wide_all(-(o->c[k] + (float)y * o->vy[k])), wide_mul(x, wide_all(o->vx[k])));
+        out |= apart << i;
+    }
+    return ~out;
+}
+
+static inline void show(struct tile_scratch *s, const struct tile_job *job, const struct bin_entry *entry, uint32_t x0,
+                        uint32_t y0, uint32_t width, uint32_t height)
+{
+    const uint32_t id = entry->id, *corners = job->triangles->corners[id];
+    const float *a = job->bins->corners[corners[0]], *b = job->bins->corners[corners[1]], *c = job->bins->corners[corners[2]];
     uint32_t left = 0, right = width, top = 0, bottom = height;
     struct shown shown;
+    struct outline outline;
     if (!isnan(a[0] + b[0] + c[0])) {
         pixel_span(box_min(box_min(a[0], b[0]), c[0]), box_max(box_max(a[0], b[0]), c[0]), x0, width, &left, &right);
         pixel_span(box_min(box_min(a[1], b[1]), c[1]), box_max(box_max(a[1], b[1]), c[1]), y0, height, &top, &bottom);
     }
     if (left >= right || top >= bottom || !shown_make(&shown, job, &s->shown_mask, id))
         return;
+    outline_make(&outline, &shown, x0, y0);
+    const uint32_t span = (1u << right) - (1u << left);
     for (uint32_t y = top; y < bottom; y++)
-        for (uint32_t x = left; x < right; x++)
+        for (uint32_t bits = row_met(s, &outline, entry->nearest, y) & span; bits; bits &= bits - 1) {
+            uint32_t x = (uint32_t)__builtin_ctz(bits);
             show_in_pixel(s, job, &shown, y * TILE_SIDE + x, x0 + x, y0 + y);
+        }
+}
+
+enum { DEPTH_BUCKETS = 32 };
+
+static inline uint32_t depth_bucket(float nearest, float most, float scale)
+{
+    float x = (most - nearest) * scale;
+    return x > 0 ? x < DEPTH_BUCKETS - 1 ? (uint32_t)x : DEPTH_BUCKETS - 1 : 0;
+}
+
+/* The tile's entries, roughly from near to far, in s->order; `ends`: of the buckets. */
+static inline void order_entries(struct tile_scratch *s, const struct bin_entry *entries, uint32_t count,
+                                 uint32_t ends[DEPTH_BUCKETS])
+{
+    float most = -INFINITY, least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        float key = entries[i].nearest;
+        most = key < INFINITY ? box_max(most, key) : most;
+        least = box_min(least, key);
+    }
+    const float scale = most > least ? DEPTH_BUCKETS / (most - least) : 0;
+    memset(ends, 0, DEPTH_BUCKETS * sizeof *ends);
+    for (uint32_t i = 0; i < count; i++)
+        ends[depth_bucket(entries[i].nearest, most, scale)]++;
+    for (uint32_t i = 0, sum = 0; i < DEPTH_BUCKETS; i++) {
+        uint32_t own = ends[i];
+        ends[i] = sum;
+        sum += own;
+    }
+    for (uint32_t i = 0; i < count; i++)
+        s->order[ends[depth_bucket(entries[i].nearest, most, scale)]++] = entries[i];
+}
+
+static inline float tile_farthest(const struct tile_scratch *s)
+{
+    wide least = wide_load(s->farthest);
+    for (int i = WIDTH; i < TILE_PIXELS; i += WIDTH)
+        least = wide_min(least, wide_load(s->farthest + i));
+    return wide_least(least);
+}
+
+/* All triangles of a tile. */
+static inline void show_all(struct tile_scratch *s, const struct tile_job *job, const struct bin_entry *entries, uint32_t count,
+                            uint32_t x0, uint32_t y0, uint32_t width, uint32_t height)
+{
+    uint32_t ends[DEPTH_BUCKETS];
+    order_entries(s, entries, count, ends);
+    for (uint32_t bucket = 0, i = 0; bucket < DEPTH_BUCKETS; bucket++) {
+        if (i == ends[bucket])
+            continue;
+        float farthest = tile_farthest(s);
+        for (; i < ends[bucket]; i++)
+            if (!(s->order[i].nearest < farthest))
+                show(s, job, &s->order[i], x0, y0, width, height);
+    }
 }
