@@ -84,6 +84,7 @@ struct group {
     uint32_t x, y;
     uint32_t open;            /* samples not yet shadowed */
     bool center;              /* one sample, the pixel's centre (bit 0), else view_samples32 */
+    bool anywhere;            /* it need not lie in its triangle: the camera pass may round */
     bool certain;             /* the receiver's lines say where its points are */
     struct receiver *collect; /* put candidates there instead of trying them */
 };
@@ -162,7 +163,7 @@ static inline void try_one_by_one(struct group *g, const struct occluder *o, con
 static inline void group_collect(struct group *g, uint32_t id)
 {
     struct receiver *r = g->collect;
-    if (cannot_shadow(r, g->job, id, g->center) || (!g->center && is_on_lit_side(r, g->job, id)))
+    if (cannot_shadow(r, g->job, id, false) || is_on_lit_side(r, g->job, id))
         return;
     if (r->candidate_count == CANDIDATES_MAX) {
         r->candidate_count = CANDIDATES_MANY;
@@ -176,7 +177,7 @@ static inline void group_collect(struct group *g, uint32_t id)
 static inline void group_try(struct group *g, uint32_t id, bool certain_to_try)
 {
     struct pixel_lines p = {.g = {0}};
-    if (!certain_to_try && cannot_shadow(g->receiver, g->job, id, g->center))
+    if (!certain_to_try && cannot_shadow(g->receiver, g->job, id, g->anywhere))
         return;
     const struct occluder *o = occluder_get(g->scratch, g->job, id);
     if (o->side == 0)
@@ -281,10 +282,9 @@ static inline bool is_small(const struct light_face *face, const struct light_bo
     return (box->u1 - box->u0) * face->u_scale < 4 && (box->v1 - box->v0) * face->v_scale < 4;
 }
 
-/* A pixel's centre need not lie on its triangle, since the camera pass may round. */
 static inline unsigned faces_for(const struct group *g)
 {
-    return g->center ? (1u << g->job->grid->face_count) - 1 : g->receiver->faces_met;
+    return g->anywhere ? (1u << g->job->grid->face_count) - 1 : g->receiver->faces_met;
 }
 
 /* Finds what may shadow the receiver within `quad` (NULL: anywhere). */
@@ -298,11 +298,14 @@ static inline void find_candidates(const struct group *g, struct receiver *r, ui
     for (unsigned faces = faces_for(g); faces && all.open; faces &= faces - 1) {
         unsigned f = (unsigned)__builtin_ctz(faces);
         struct light_box box;
-        if (!query_box(g->job, g->center ? NULL : &r->boxes[f], f, quad, &box))
+        if (!query_box(g->job, g->anywhere ? NULL : &r->boxes[f], f, quad, &box))
             continue;
         all.box = &box;
         group_try_face(&all, f);
     }
+    if (area == AREA_PICTURE && r->candidate_count <= 0)
+        atomic_store_explicit(&g->job->grid->known[r->id], r->candidate_count == 0 ? LIGHT_NOTHING : LIGHT_MANY,
+                              memory_order_relaxed);
 }
 
 static inline bool is_small_everywhere(const struct tile_job *job, const struct receiver *r)
@@ -314,18 +317,24 @@ static inline bool is_small_everywhere(const struct tile_job *job, const struct 
 }
 
 /* Finds candidates for the largest area around the pixel that has few: the picture if the receiver is small, else its tile, else its block.
- * False when even that has too many. */
+ * False when even that has too many, or the point may lie anywhere. */
 static inline bool candidates_ready(const struct group *g, struct receiver *r, uint32_t tile)
 {
+    if (g->anywhere)
+        return false;
+    unsigned known = atomic_load_explicit(&g->job->grid->known[r->id], memory_order_relaxed);
+    if (known != LIGHT_UNKNOWN) {
+        r->candidate_count = known == LIGHT_NOTHING ? 0 : CANDIDATES_MANY;
+        return known == LIGHT_NOTHING;
+    }
     uint32_t tile_area = tile * AREAS_PER_TILE, tx = g->x % TILE_SIDE, ty = g->y % TILE_SIDE;
     uint32_t block_area = tile_area + 1 + ty / BLOCK_SIDE * BLOCKS_PER_ROW + tx / BLOCK_SIDE;
     struct quad quad;
+    receiver_boxes(r, g->job);
     if (r->candidate_area == AREA_PICTURE || r->candidate_area == tile_area || r->candidate_area == block_area)
         return r->candidate_count >= 0;
     if (r->crowded_tile != tile) {
         if (is_small_everywhere(g->job, r)) {
-            if (g->center)
-                return false;
             find_candidates(g, r, AREA_PICTURE, NULL);
             return r->candidate_count >= 0;
         }
@@ -343,13 +352,13 @@ static inline bool candidates_ready(const struct group *g, struct receiver *r, u
 }
 
 /* Takes the shadowed samples out of g->open. `quad`: where they lie; NULL: not known. */
-static inline void group_cast(struct group *g, const struct quad *quad)
+static inline void group_cast(struct group *g, struct receiver *r, const struct quad *quad)
 {
-    const struct receiver *r = g->receiver;
+    receiver_boxes(r, g->job);
     for (unsigned faces = faces_for(g); faces && g->open; faces &= faces - 1) {
         unsigned f = (unsigned)__builtin_ctz(faces);
         struct light_box box;
-        if (!query_box(g->job, g->center ? NULL : &r->boxes[f], f, quad, &box))
+        if (!query_box(g->job, g->anywhere ? NULL : &r->boxes[f], f, quad, &box))
             continue;
         g->box = &box;
         group_try_face(g, f);

@@ -27,7 +27,7 @@ enum { REF_BYTES = 5 * sizeof(float) + sizeof(uint32_t) };
 
 size_t light_grid_least_bytes(const struct triangles *triangles)
 {
-    return ((size_t)triangles->count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref)) + 4096;
+    return ((size_t)triangles->count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref) + 1) + 4096;
 }
 
 struct build {
@@ -334,7 +334,7 @@ static uint32_t wanted_side(const struct light_grid *grid)
 static size_t bytes_for(const struct light_grid *grid, uint32_t side)
 {
     size_t cells = (size_t)side * side * 4 / 3 * grid->face_count;
-    return ((size_t)grid->ref_count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref)) + cells * 2 * sizeof(uint32_t);
+    return ((size_t)grid->ref_count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref) + 1) + cells * 2 * sizeof(uint32_t);
 }
 
 static void fit_faces(struct build *b, uint32_t side)
@@ -360,10 +360,12 @@ static bool allocate(struct build *b)
     grid->u0 = floats(grid), grid->u1 = floats(grid), grid->v0 = floats(grid), grid->v1 = floats(grid), grid->near = floats(grid);
     uint32_t blocks = light_blocks(&grid->faces[0]);
     grid->blocks = calloc((size_t)blocks * blocks * grid->face_count, sizeof *grid->blocks);
+    grid->known = calloc((size_t)b->triangles->count + 1, sizeof *grid->known);
     grid->ids = calloc((size_t)grid->ref_count + LIGHT_PADDING, sizeof *grid->ids);
     grid->first = malloc(((size_t)grid->cell_count + 1) * sizeof *grid->first);
     b->cursor = malloc(((size_t)grid->cell_count + 1) * sizeof *b->cursor);
-    return grid->u0 && grid->u1 && grid->v0 && grid->v1 && grid->near && grid->ids && grid->blocks && grid->first && b->cursor;
+    return grid->u0 && grid->u1 && grid->v0 && grid->v1 && grid->near && grid->ids && grid->blocks && grid->known &&
+           grid->first && b->cursor;
 }
 
 static bool list_all(struct build *b, size_t memory, struct job_pool *pool)
@@ -377,7 +379,8 @@ static bool list_all(struct build *b, size_t memory, struct job_pool *pool)
     fit_faces(b, side);
     if (!allocate(b))
         return false;
-    grid->bytes = ((size_t)grid->ref_count + LIGHT_PADDING) * REF_BYTES + grid->cell_count * sizeof *grid->first;
+    grid->bytes =
+        ((size_t)grid->ref_count + LIGHT_PADDING) * REF_BYTES + grid->cell_count * sizeof *grid->first + b->triangles->count;
     count_cells(b, pool);
     job_pool_for(pool, chunks_of(grid->ref_count), place_refs, b);
     job_pool_for(pool, chunks_of(grid->cell_count), write_cells, b);
@@ -406,6 +409,7 @@ void light_grid_finish(struct light_grid *grid)
     free(grid->v1);
     free(grid->near);
     free(grid->ids);
+    free((void *)grid->known);
     free((void *)grid->blocks);
     free(grid->first);
     memset(grid, 0, sizeof *grid);

@@ -45,9 +45,13 @@ struct light_grid {
     uint32_t ref_count;
     uint32_t *first; /* boxes of each cell, one more than cells */
     uint32_t cell_count;
+    _Atomic uint8_t *known;   /* enum light_known of each triangle: learned as pictures ask, true for all */
     _Atomic uint16_t *blocks; /* face by face, 4 x 4 cells of level 0 each: bit a level: boxes of it meet the block */
     size_t bytes;
 };
+
+/* What may shadow some point of a triangle. */
+enum light_known { LIGHT_UNKNOWN, LIGHT_NOTHING, LIGHT_MANY };
 
 enum face_part { FACE_NONE, FACE_SOME };
 

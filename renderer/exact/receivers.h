@@ -90,6 +90,8 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
     r->vy = lines.vy[3] * scale;
     r->fixed_size = lines.fixed_size[3] * fabs(scale);
     r->v_size = lines.v_size[3] * fabs(scale);
+    r->edge = lines.v, r->edge_x = lines.vx, r->edge_y = lines.vy;
+    r->edge_error = lines.v_size * LINE_ROUNDING + LINE_UNDERFLOW;
     r->certain = fabs(r->fixed) > LINE_ROUNDING * r->fixed_size + LINE_UNDERFLOW;
     /* N . d where the camera sees it: against F in perspective, F itself else. */
     int slope = (lines.fixed[3] > 0) == job->view->orthographic ? 1 : -1;
@@ -100,7 +102,18 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
     r->to_light.y *= side;
     r->to_light.z *= side;
     r->candidate_area = r->crowded_tile = AREA_NONE;
+    r->boxed = false;
+}
+
+/* Its boxes on the light's faces, which only those need that may be shadowed. */
+static inline void receiver_boxes(struct receiver *r, const struct tile_job *job)
+{
+    struct dvec3 c[3];
+    if (r->boxed)
+        return;
+    r->boxed = true;
     r->faces_met = 0;
+    triangle_corners(job->triangles, r->id, c);
     for (unsigned f = 0; f < job->grid->face_count; f++)
         r->faces_met |= (unsigned)(light_face_box(job->grid, &job->grid->faces[f], c, 3, 0, &r->boxes[f]) == FACE_SOME) << f;
 }
@@ -157,6 +170,16 @@ static inline struct receiver *receiver_get(struct tile_scratch *s, const struct
     if (r->id != id)
         receiver_make(r, s, job, id);
     return r;
+}
+
+/* True when the ray at (x, y) certainly crosses the inside of the receiver, before the eye, and the receiver is certain. */
+static inline bool is_inside(const struct tile_job *job, const struct receiver *r, double x, double y)
+{
+    lane4 value = r->edge + x * r->edge_x + y * r->edge_y, under = -value;
+    double v = r->v + x * r->vx + y * r->vy;
+    if (!r->certain || (!job->view->orthographic && !(v > LINE_ROUNDING * r->v_size + LINE_UNDERFLOW)))
+        return false;
+    return (lanes_above(&value, &r->edge_error) & 7) == 7 || (lanes_above(&under, &r->edge_error) & 7) == 7;
 }
 
 /* Points of a receiver's plane at four picture positions, and how far off they may be. */

@@ -52,7 +52,10 @@ struct receiver {
     bool certain; /* the sign of F is known */
     bool faces;   /* if certain: it faces the light where the camera sees it */
     double fixed, v, vx, vy, fixed_size, v_size;
+    lane4 edge, edge_x, edge_y,
+        edge_error;        /* its edges in the picture: positive inside, or negative, all three; lane 3 nothing */
     struct forms to_light; /* seen from the light: positive inside its edges, and on the light's side of its plane */
+    bool boxed;            /* the next two are known: receiver_boxes() */
     unsigned faces_met;    /* bit a face of the grid */
     struct light_box boxes[LIGHT_FACES_MAX];
     int candidate_count; /* what may shadow its points in `candidate_area`, or CANDIDATES_MANY: ask the grid */

@@ -31,7 +31,7 @@ static inline uint32_t shade_group(struct tile_scratch *s, const struct tile_job
         for (int i = 0; i < r->candidate_count && g.open; i++)
             group_try(&g, r->candidates[i], true);
     else if (g.open)
-        group_cast(&g, placed ? &quad : NULL);
+        group_cast(&g, r, placed ? &quad : NULL);
     *lit |= g.open;
     return receivers;
 }
@@ -111,8 +111,14 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     struct receiver *r = receiver_get(s, job, id);
     struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = 1, .center = true};
     struct quad quad;
-    bool placed = g.certain = r->certain && quad_make(&quad, job, r, x + 0.5, y + 0.5, 0);
-    int reached = placed ? (r->faces ? quad_within_reach(job->light, &quad) : 0) : -1;
+    g.anywhere = !is_inside(job, r, x + 0.5, y + 0.5);
+    g.certain = !g.anywhere;
+    if (!g.anywhere && !r->faces)
+        return false;
+    bool listed = candidates_ready(&g, r, tile), reaches_all = !g.anywhere && light_reaches_all(job->light);
+    bool placed = r->certain && !(listed && reaches_all) && quad_make(&quad, job, r, x + 0.5, y + 0.5, 0);
+    int reached = reaches_all ? 1 : placed ? (r->faces ? quad_within_reach(job->light, &quad) : 0) : -1;
+    g.certain |= placed;
     if (reached < 0) {
         struct sample_ray ray = group_ray(&g, 0);
         reached = slow_receives(&s->slow, &ray, id);
@@ -120,8 +126,8 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     if (!reached)
         return false;
     s->counts.receivers++;
-    if (!placed || !candidates_ready(&g, r, tile))
-        group_cast(&g, placed ? &quad : NULL);
+    if (!listed)
+        group_cast(&g, r, placed ? &quad : NULL);
     else
         for (int i = 0; i < r->candidate_count && g.open; i++)
             group_try(&g, r->candidates[i], true);
