@@ -22,7 +22,6 @@ enum { BINS = 2 };
 #define HOME_BIN   0x3fffffffu
 
 #define INLINE static inline __attribute__((always_inline))
-typedef int32_t lanes_int_loose __attribute__((vector_size(32), aligned(4), may_alias));
 
 struct build {
     struct geometry_map *map;

@@ -11,11 +11,12 @@
 #include "gl/context.h"
 #include "passes/gbuffer.h"
 #include "scene/pixel.h"
+#include "shadow/light_lanes.h"
 #include "shadow/pixel_pass.h"
 
 #define INLINE static inline __attribute__((always_inline))
 
-enum { ROWS = 8, COLUMNS = 64 }; /* picture rows a job; pixels of a row worked on at a time */
+enum { ROWS = 8 }; /* picture rows a job */
 
 bool geometry_maps_prepare(struct geometry_maps *g, const struct shadow_input *in, struct error *err)
 {
@@ -101,89 +102,117 @@ static struct placed_map place_map(const struct geometry_map *m, struct dvec3 ca
     return p;
 }
 
-/* Receivers of a run of pixels, a member at a time. */
+/* Eight pixels of a row, and the points that are seen in them. */
 struct run {
-    float x[COLUMNS], y[COLUMNS], z[COLUMNS]; /* relative */
-    int32_t receives[COLUMNS];
+    lanes_float x, y, z; /* relative */
+    lanes_int receives;  /* all bits, or none */
 };
 
-/* The same arithmetic as receiver_at() of shaders/receiver.glsl. */
-INLINE void find_receivers(const struct resolve_job *job, uint32_t x0, uint32_t y, uint32_t count, struct run *run)
+/* Depths and packed normals of eight pixels; pixels past the picture have depth 0. */
+INLINE void load_pixels(const struct pixel *pixels, uint32_t count, lanes_float *depth, lanes_int *normal)
 {
-    const struct pixel *surface = job->surfaces + (size_t)y * job->width + x0;
-    for (uint32_t i = 0; i < count; i++) {
-        float fx = (float)(x0 + i), fy = (float)y, depth = surface[i].depth, p[3], v[3];
-        for (int k = 0; k < 3; k++)
-            p[k] = job->rays.origin[k] + fx * job->rays.origin_dx[k] + fy * job->rays.origin_dy[k] +
-                   depth * (job->rays.direction[k] + fx * job->rays.direction_dx[k] + fy * job->rays.direction_dy[k]);
-        for (int k = 0; k < 3; k++)
-            v[k] = job->light.kind == LIGHT_DIRECTIONAL ? job->light.light[k] : job->light.light[k] - p[k];
-        float a = (float)(int16_t)(surface[i].geometric & 0xffff) / 32767,
-              b = (float)((int32_t)surface[i].geometric >> 16) / 32767;
-        float c = 1 - fabsf(a) - fabsf(b), t = c < 0 ? -c : 0;
-        a += a >= 0 ? -t : t;
-        b += b >= 0 ? -t : t;
-        float facing = a * v[0] + b * v[1] + c * v[2], d2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        float along = -(v[0] * job->light.axis[0] + v[1] * job->light.axis[1] + v[2] * job->light.axis[2]);
-        bool spot = job->light.kind != LIGHT_SPOT || along >= job->light.cosine * sqrtf(d2);
-        run->x[i] = p[0];
-        run->y[i] = p[1];
-        run->z[i] = p[2];
-        run->receives[i] = (depth > 0) & (facing > 0) & (d2 <= job->light.range2) & spot;
+    struct pixel some[CONSERVATIVE_LANES];
+    if (count < CONSERVATIVE_LANES) {
+        memset(some, 0, sizeof some);
+        memcpy(some, pixels, count * sizeof *some);
+        pixels = some;
     }
+    const lanes_int_loose *pairs = (const lanes_int_loose *)(const void *)pixels;
+    lanes_int even = __builtin_shufflevector(pairs[0], pairs[1], 0, 1, 8, 9, 4, 5, 12, 13);
+    lanes_int odd = __builtin_shufflevector(pairs[2], pairs[3], 0, 1, 8, 9, 4, 5, 12, 13);
+    lanes_int normals = __builtin_shufflevector(even, odd, 0, 2, 8, 10, 4, 6, 12, 14);
+    lanes_int depths = __builtin_shufflevector(even, odd, 1, 3, 9, 11, 5, 7, 13, 15);
+    *normal = __builtin_shufflevector(normals, normals, 0, 4, 1, 5, 2, 6, 3, 7);
+    *depth = (lanes_float)__builtin_shufflevector(depths, depths, 0, 4, 1, 5, 2, 6, 3, 7);
+}
+
+/* The same arithmetic as receiver_at() of shaders/receiver.glsl. False: nothing receives. */
+INLINE bool find_receivers(const struct resolve_job *job, uint32_t x0, uint32_t y0, uint32_t count, struct run *run)
+{
+    lanes_float depth, p[3], v[3], x = LANES_COUNT + (float)x0, y = LANES_ALL((float)y0);
+    lanes_int normal;
+    load_pixels(job->surfaces + (size_t)y0 * job->width + x0, count, &depth, &normal);
+    run->receives = depth > 0;
+    if (!LANES_ANY(run->receives))
+        return false;
+    const struct pixel_rays *r = &job->rays;
+    for (int k = 0; k < 3; k++) {
+        p[k] = r->origin[k] + x * r->origin_dx[k] + y * r->origin_dy[k] +
+               depth * (r->direction[k] + x * r->direction_dx[k] + y * r->direction_dy[k]);
+        v[k] = job->light.kind == LIGHT_DIRECTIONAL ? LANES_ALL(job->light.light[k]) : job->light.light[k] - p[k];
+    }
+    lanes_float a = __builtin_convertvector((normal << 16) >> 16, lanes_float) / 32767;
+    lanes_float b = __builtin_convertvector(normal >> 16, lanes_float) / 32767, none = {};
+    lanes_float c = 1 - LANES_ABS(a) - LANES_ABS(b), t = LANES_IF(c < 0, -c, none);
+    a += LANES_IF(a >= 0, -t, t);
+    b += LANES_IF(b >= 0, -t, t);
+    lanes_float facing = a * v[0] + b * v[1] + c * v[2], d2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    run->receives &= (facing > 0) & (d2 <= job->light.range2);
+    if (job->light.kind == LIGHT_SPOT) {
+        lanes_float along = -(v[0] * job->light.axis[0] + v[1] * job->light.axis[1] + v[2] * job->light.axis[2]);
+        LANES_ROOT(d2);
+        run->receives &= along >= job->light.cosine * d2;
+    }
+    run->x = p[0];
+    run->y = p[1];
+    run->z = p[2];
+    return LANES_ANY(run->receives);
 }
 
 /* Where a run's receivers lie on a map. */
 struct placed_run {
-    float x[COLUMNS], y[COLUMNS], n[COLUMNS];
-    int32_t inside[COLUMNS];
-};
+    float x[CONSERVATIVE_LANES], y[CONSERVATIVE_LANES], n[CONSERVATIVE_LANES];
+} __attribute__((aligned(32)));
 
-INLINE void put_on_map(const struct placed_map *m, const struct run *run, struct placed_run *out)
+/* on: which lie on it. */
+INLINE void put_on_map(const struct placed_map *m, const struct run *run, struct placed_run *out, lanes_int *on)
 {
-    float side = (float)m->map->size;
-    for (uint32_t i = 0; i < COLUMNS; i++) {
-        float q[3];
-        for (int k = 0; k < 3; k++)
-            q[k] = m->row[k][0] * run->x[i] + m->row[k][1] * run->y[i] + m->row[k][2] * run->z[i] + m->row[k][3];
-        float w = m->orthographic ? 1 : 1 / q[2];
-        out->n[i] = m->orthographic ? m->far - q[2] : w;
-        out->x[i] = q[0] * w * m->scale_x + m->offset_x;
-        out->y[i] = q[1] * w * m->scale_y + m->offset_y;
-        out->inside[i] = (w > 0) & (out->x[i] >= 0) & (out->y[i] >= 0) & (out->x[i] < side) & (out->y[i] < side);
-    }
+    lanes_float q[3], side = LANES_ALL((float)m->map->size);
+    for (int k = 0; k < 3; k++)
+        q[k] = m->row[k][0] * run->x + m->row[k][1] * run->y + m->row[k][2] * run->z + m->row[k][3];
+    lanes_float w = m->orthographic ? LANES_ALL(1.0f) : 1 / q[2];
+    lanes_float x = q[0] * w * m->scale_x + m->offset_x, y = q[1] * w * m->scale_y + m->offset_y;
+    *(lanes_float *)out->n = m->orthographic ? m->far - q[2] : w;
+    *(lanes_float *)out->x = x;
+    *(lanes_float *)out->y = y;
+    *on = (w > 0) & (x >= 0) & (y >= 0) & (x < side) & (y < side);
 }
 
 /* The first map that holds a point answers for it; points on none are lit. */
 static void resolve_on_map(const struct resolve_job *job, const struct geometry_map *m, const struct placed_run *placed,
-                           size_t first, uint32_t count, int32_t *open, uint32_t *hint)
+                           size_t first, unsigned open, uint32_t *hint)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        if (!(open[i] & placed->inside[i]))
-            continue;
-        open[i] = 0;
-        struct map_point p = {.x = placed->x[i], .y = placed->y[i], .n = placed->n[i], .id = job->ids[first + i]};
+    for (; open; open &= open - 1) {
+        unsigned i = (unsigned)__builtin_ctz(open);
+        struct map_point p = {.x = placed->x[i], .y = placed->y[i], .n = placed->n[i]};
         p.at = geometry_map_at(m, (uint32_t)p.x, (uint32_t)p.y);
-        if (p.at != SIZE_MAX && p.n < m->cells[p.at].nearest && !job->decide(job->state, m, &p, job->in->params, hint))
+        if (p.at == SIZE_MAX || !(p.n < m->cells[p.at].nearest))
+            continue;
+        p.id = job->ids[first + i];
+        if (!job->decide(job->state, m, &p, job->in->params, hint))
             job->visibility[first + i] = 0;
     }
 }
 
-INLINE void resolve_run(const struct resolve_job *job, uint32_t x, uint32_t y, uint32_t count, uint32_t *hint)
+INLINE void resolve_run(const struct resolve_job *job, uint32_t x, uint32_t y, uint32_t *hint)
 {
     size_t first = (size_t)y * job->width + x;
+    uint32_t count = job->width - x < CONSERVATIVE_LANES ? job->width - x : CONSERVATIVE_LANES;
     struct run run;
     struct placed_run placed;
-    int32_t receivers = 0;
-    memset(&run, 0, sizeof run);
-    find_receivers(job, x, y, count, &run);
-    for (uint32_t i = 0; i < count; i++) {
-        job->visibility[first + i] = run.receives[i] ? 1 : 0;
-        receivers |= run.receives[i];
+    if (!find_receivers(job, x, y, count, &run)) {
+        memset(job->visibility + first, 0, count * sizeof *job->visibility);
+        return;
     }
-    for (unsigned i = 0; receivers && i < job->map_count; i++) {
-        put_on_map(&job->maps[i], &run, &placed);
-        resolve_on_map(job, job->maps[i].map, &placed, first, count, run.receives, hint);
+    lanes_float values = (lanes_float)(run.receives & (lanes_int)LANES_ALL(1.0f));
+    memcpy(job->visibility + first, &values, count * sizeof *job->visibility);
+    for (unsigned i = 0; i < job->map_count; i++) {
+        lanes_int on;
+        put_on_map(&job->maps[i], &run, &placed, &on);
+        on &= run.receives;
+        unsigned open = LANES_BITS(on);
+        run.receives &= ~on;
+        resolve_on_map(job, job->maps[i].map, &placed, first, open, hint);
     }
 }
 
@@ -191,8 +220,8 @@ INLINE void resolve_rows_inline(const struct resolve_job *job, size_t index)
 {
     uint32_t end = ((uint32_t)index + 1) * ROWS < job->height ? ((uint32_t)index + 1) * ROWS : job->height, hint = 0;
     for (uint32_t y = (uint32_t)index * ROWS; y < end; y++)
-        for (uint32_t x = 0; x < job->width; x += COLUMNS)
-            resolve_run(job, x, y, x + COLUMNS < job->width ? COLUMNS : job->width - x, &hint);
+        for (uint32_t x = 0; x < job->width; x += CONSERVATIVE_LANES)
+            resolve_run(job, x, y, &hint);
 }
 
 #ifdef __x86_64__

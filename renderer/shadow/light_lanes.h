@@ -6,6 +6,7 @@
 #include "shadow/light_mesh.h"
 
 typedef float lanes_quarter __attribute__((vector_size(16)));
+typedef int32_t lanes_int_loose __attribute__((vector_size(32), aligned(4), may_alias));
 typedef int64_t lanes_long __attribute__((vector_size(32)));
 
 /* Macros, since vectors that functions return depend on the instruction set. */
@@ -17,6 +18,16 @@ typedef int64_t lanes_long __attribute__((vector_size(32)));
 /* Whether any bit is set. */
 #define LANES_ANY(mask) \
     ((((lanes_long)(mask))[0] | ((lanes_long)(mask))[1] | ((lanes_long)(mask))[2] | ((lanes_long)(mask))[3]) != 0)
+/* A bit a lane of a mask. */
+#define LANES_BITS(mask)                                                                                                 \
+    (((mask)[0] & 1u) | ((mask)[1] & 2u) | ((mask)[2] & 4u) | ((mask)[3] & 8u) | ((mask)[4] & 16u) | ((mask)[5] & 32u) | \
+     ((mask)[6] & 64u) | ((mask)[7] & 128u))
+/* The square root of each, correctly rounded whatever the instruction set. */
+#define LANES_ROOT(v)                                         \
+    do {                                                      \
+        for (int lane = 0; lane < CONSERVATIVE_LANES; lane++) \
+            (v)[lane] = __builtin_sqrtf((v)[lane]);           \
+    } while (0)
 #define LANES_OF(low, high) __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7)
 
 #define LANES_LEAST(v) LANES_MIN(LANES_MIN((v)[0], (v)[1]), (v)[2])

@@ -40,13 +40,6 @@ static inline __attribute__((always_inline)) void map_facets_box(struct map_face
     f->most = LANES_MOST(f->at.n);
 }
 
-/* The square root of each, correctly rounded whatever the instruction set. */
-#define MAP_FACETS_ROOT(v)                                    \
-    do {                                                      \
-        for (int lane = 0; lane < CONSERVATIVE_LANES; lane++) \
-            (v)[lane] = __builtin_sqrtf((v)[lane]);           \
-    } while (0)
-
 /* The rest. `nearest`: the nearness of the map's near plane. */
 static inline __attribute__((always_inline)) void map_facets_set(struct map_facets *f, float nearest, float side)
 {
@@ -62,7 +55,7 @@ static inline __attribute__((always_inline)) void map_facets_set(struct map_face
         f->c[k] = f->a[k] * (0.5f - x[k]) + f->b[k] * (0.5f - y[k]);
         f->reach[k] = (0.5f + m) * (LANES_ABS(f->a[k]) + LANES_ABS(f->b[k]));
         lanes_float length = f->a[k] * f->a[k] + f->b[k] * f->b[k] + 1e-30f;
-        MAP_FACETS_ROOT(length);
+        LANES_ROOT(length);
         f->inverse[k] = RANK_STEPS / length;
         longest = k == 0 ? f->inverse[k] : LANES_MIN(longest, f->inverse[k]);
     }
