@@ -1,9 +1,8 @@
 #include "shadow/coverage_lists.h"
 
 #include <stdatomic.h>
-#include <string.h>
 
-#include "shadow/conservative.h"
+#include "shadow/light_lanes.h"
 
 #define INLINE static inline __attribute__((always_inline))
 #define MADE   0x80000000u
@@ -19,22 +18,9 @@ struct candidate {
     int corners; /* of the texel, that it holds; 0: touches the texel; 5: the texel's own */
 };
 
-/* Eight triangles over one texel, a lane each; coordinates from the texel's centre. Lanes without a triangle are not numbers. */
-struct lanes_over {
-    lanes_float x[3], y[3];
-};
-
-static void put_lane(struct lanes_over *over, int lane, const struct light_triangle *t, float x, float y)
-{
-    for (int k = 0; k < 3; k++) {
-        over->x[k][lane] = t->corner[k]->x - x;
-        over->y[k][lane] = t->corner[k]->y - y;
-    }
-}
-
 /* How many of the texel's corners each triangle holds (eq. 3); those are the midpoints between centres (eq. 2). Eq. 3's u, v >= 0 and
  * u + v <= 1 are the signs of the three edges. -1: it does not even touch the texel: conservative.h. */
-INLINE void corners_held(const struct lanes_over *t, lanes_int *out)
+INLINE void corners_held(const struct light_lanes *t, lanes_int *out)
 {
     const float half = 0.5f, reach = half + CONSERVATIVE_MARGIN;
     lanes_float area = (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
@@ -59,24 +45,6 @@ INLINE void corners_held(const struct lanes_over *t, lanes_int *out)
     *out = ((4 + outside[0] + outside[1] + outside[2] + outside[3]) & touches) | ~touches;
 }
 
-#ifdef __x86_64__
-__attribute__((target("avx2"))) static void corners_held_avx2(const struct lanes_over *t, lanes_int *out)
-{
-    corners_held(t, out);
-}
-#endif
-
-static void corners_held_any(const struct lanes_over *t, lanes_int *out)
-{
-#ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2")) {
-        corners_held_avx2(t, out);
-        return;
-    }
-#endif
-    corners_held(t, out);
-}
-
 /* A wild triangle's, one by one; those that hold none do not count. */
 static int wild_corners_held(const struct geometry_map *m, const struct light_part *part, uint32_t id, uint32_t x, uint32_t y)
 {
@@ -87,29 +55,30 @@ static int wild_corners_held(const struct geometry_map *m, const struct light_pa
     return held ? held : -1;
 }
 
-/* What eight triangles hold of texel (x, y); MAP_NONE among them: -1. */
-static void claims(const struct geometry_map *m, const uint32_t *ids, uint32_t x, uint32_t y, uint32_t *hint, lanes_int *out)
+/* What eight triangles hold of texel (x, y). */
+INLINE void claims(const struct geometry_map *m, const uint32_t *ids, uint32_t x, uint32_t y, uint32_t *hint, lanes_int *out)
 {
-    struct lanes_over over;
-    const struct light_part *wild[CONSERVATIVE_LANES] = {NULL};
-    bool any_wild = false;
-    memset(&over, 0xff, sizeof over);
+    const struct light_part *part[CONSERVATIVE_LANES];
+    struct light_triangle t[CONSERVATIVE_LANES];
+    struct light_lanes over;
+#pragma GCC unroll 8
     for (int lane = 0; lane < CONSERVATIVE_LANES; lane++) {
-        if (ids[lane] == MAP_NONE)
-            continue;
-        const struct light_part *part = light_mesh_part(&m->mesh, ids[lane], hint);
-        struct light_triangle t = light_part_triangle(part, ids[lane]);
-        if (light_triangle_wild(&t)) {
-            wild[lane] = part;
-            any_wild = true;
-        } else {
-            put_lane(&over, lane, &t, (float)x + 0.5f, (float)y + 0.5f);
-        }
+        part[lane] = light_mesh_part(&m->mesh, ids[lane], hint);
+        t[lane] = light_part_triangle(part[lane], ids[lane]);
     }
-    corners_held_any(&over, out);
-    for (int lane = 0; any_wild && lane < CONSERVATIVE_LANES; lane++)
-        if (wild[lane])
-            (*out)[lane] = wild_corners_held(m, wild[lane], ids[lane], x, y);
+    light_lanes_load(t, &over);
+    for (int k = 0; k < 3; k++) {
+        over.x[k] -= (float)x + 0.5f;
+        over.y[k] -= (float)y + 0.5f;
+    }
+    corners_held(&over, out);
+    lanes_float sum = over.x[0] + over.x[1] + over.x[2];
+    lanes_int odd = sum != sum;
+    if (!LANES_ANY(odd))
+        return;
+    for (int lane = 0; lane < CONSERVATIVE_LANES; lane++)
+        if (odd[lane])
+            (*out)[lane] = wild_corners_held(m, part[lane], ids[lane], x, y);
 }
 
 static bool is_known(const struct candidate *candidates, unsigned count, uint32_t id)
@@ -120,33 +89,44 @@ static bool is_known(const struct candidate *candidates, unsigned count, uint32_
     return false;
 }
 
-/* Eight texels of the pool, from number `first` on. */
-static unsigned add_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned first, uint32_t *hint,
-                               struct candidate *out, unsigned count)
+/* What eight texels of the pool keep, from number `first` on. */
+INLINE void kept_around(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned first,
+                        uint32_t ids[CONSERVATIVE_LANES])
 {
     /* Most texels have their neighbours in their own tile. */
     bool within = x % MAP_TILE - 2 < MAP_TILE - 4 && y % MAP_TILE - 2 < MAP_TILE - 4;
-    uint32_t ids[CONSERVATIVE_LANES];
-    lanes_int held;
-    bool any = false;
+#pragma GCC unroll 8
     for (unsigned k = 0; k < CONSERVATIVE_LANES; k++) {
         int32_t dx = coverage_pool[first + k][0], dy = coverage_pool[first + k][1];
-        uint32_t id = within ? m->cells[(ptrdiff_t)at + dy * (ptrdiff_t)MAP_TILE + dx].triangle
-                             : geometry_map_triangle(m, (int32_t)x + dx, (int32_t)y + dy);
-        ids[k] = id == MAP_NONE || (id & MAP_ID) == out[0].id ? MAP_NONE : id & MAP_ID;
-        any |= ids[k] != MAP_NONE;
+        ids[k] = within ? m->cells[(ptrdiff_t)at + dy * (ptrdiff_t)MAP_TILE + dx].triangle
+                        : geometry_map_triangle(m, (int32_t)x + dx, (int32_t)y + dy);
     }
-    if (!any)
+}
+
+INLINE unsigned add_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned first, uint32_t *hint,
+                               struct candidate *out, unsigned count)
+{
+    uint32_t ids[CONSERVATIVE_LANES];
+    int32_t corners[CONSERVATIVE_LANES];
+    kept_around(m, x, y, at, first, ids);
+    lanes_int kept = *(const lanes_int_loose *)ids, named = kept & (int32_t)MAP_ID, own = (lanes_int){} + (int32_t)out[0].id;
+    lanes_int other = (kept != (int32_t)MAP_NONE) & (named != own), held;
+    if (!LANES_ANY(other))
         return count;
+    *(lanes_int_loose *)ids = (named & other) | (own & ~other);
     claims(m, ids, x, y, hint, &held);
-    for (unsigned k = 0; k < CONSERVATIVE_LANES; k++)
-        if (held[k] >= 0 && !is_known(out, count, ids[k]))
-            out[count++] = (struct candidate){ids[k], 1u << (first + k), held[k]};
+    *(lanes_int_loose *)corners = held;
+    other &= held >= 0;
+    for (unsigned open = LANES_BITS(other); open; open &= open - 1) {
+        unsigned k = (unsigned)__builtin_ctz(open);
+        if (!is_known(out, count, ids[k]))
+            out[count++] = (struct candidate){ids[k], 1u << (first + k), corners[k]};
+    }
     return count;
 }
 
 /* The texel's own triangle comes first, whatever it holds; the second ring only where the first leaves places free. */
-static unsigned find_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
+INLINE unsigned find_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
                                 uint32_t *hint, struct candidate *out)
 {
     unsigned count = 1;
@@ -157,8 +137,8 @@ static unsigned find_candidates(const struct geometry_map *m, uint32_t x, uint32
     return count;
 }
 
-static uint32_t make_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
-                          uint32_t *hint)
+INLINE uint32_t make_list_inline(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
+                                 uint32_t *hint)
 {
     struct candidate candidates[COVERAGE_POOL];
     unsigned count = find_candidates(m, x, y, at, nodes, pool, hint, candidates);
@@ -170,6 +150,25 @@ static uint32_t make_list(const struct geometry_map *m, uint32_t x, uint32_t y, 
                 nodes--;
             }
     return list;
+}
+
+#ifdef __x86_64__
+/* The same arithmetic in wider vectors (no contraction), so the same bits. */
+__attribute__((target("avx2"))) static uint32_t make_list_avx2(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at,
+                                                               unsigned nodes, unsigned pool, uint32_t *hint)
+{
+    return make_list_inline(m, x, y, at, nodes, pool, hint);
+}
+#endif
+
+static uint32_t make_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
+                          uint32_t *hint)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2"))
+        return make_list_avx2(m, x, y, at, nodes, pool, hint);
+#endif
+    return make_list_inline(m, x, y, at, nodes, pool, hint);
 }
 
 uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,

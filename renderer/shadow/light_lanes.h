@@ -15,13 +15,10 @@ typedef int64_t lanes_long __attribute__((vector_size(32)));
 #define LANES_MIN(a, b)      LANES_IF((a) < (b), a, b)
 #define LANES_ALL(value)     ((lanes_float){} + (value))
 #define LANES_ABS(v)         ((lanes_float)((lanes_int)(v) & ((lanes_int){} + INT32_MAX)))
-/* Whether any bit is set. */
-#define LANES_ANY(mask) \
-    ((((lanes_long)(mask))[0] | ((lanes_long)(mask))[1] | ((lanes_long)(mask))[2] | ((lanes_long)(mask))[3]) != 0)
-/* A bit a lane of a mask. */
-#define LANES_BITS(mask)                                                                                                 \
-    (((mask)[0] & 1u) | ((mask)[1] & 2u) | ((mask)[2] & 4u) | ((mask)[3] & 8u) | ((mask)[4] & 16u) | ((mask)[5] & 32u) | \
-     ((mask)[6] & 64u) | ((mask)[7] & 128u))
+#define LANES_FOLD(m)        (((lanes_long)(m))[0] | ((lanes_long)(m))[1] | ((lanes_long)(m))[2] | ((lanes_long)(m))[3])
+/* Whether any bit is set; and a bit a lane. */
+#define LANES_ANY(mask)      (LANES_FOLD(mask) != 0)
+#define LANES_BITS(mask)     light_lanes_halves(LANES_FOLD(((mask)&light_lanes_powers)))
 /* The square root of each, correctly rounded whatever the instruction set. */
 #define LANES_ROOT(v)                                         \
     do {                                                      \
@@ -32,6 +29,9 @@ typedef int64_t lanes_long __attribute__((vector_size(32)));
 
 #define LANES_LEAST(v) LANES_MIN(LANES_MIN((v)[0], (v)[1]), (v)[2])
 #define LANES_MOST(v)  LANES_MAX(LANES_MAX((v)[0], (v)[1]), (v)[2])
+
+static const lanes_int light_lanes_powers = {1, 2, 4, 8, 16, 32, 64, 128};
+static inline unsigned light_lanes_halves(int64_t both) { return (unsigned)(both | both >> 32) & 0xff; }
 
 /* Corner k's coordinates, of each lane. */
 struct light_lanes {
