@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "shadow/coverage_asks.h"
 #include "shadow/coverage_lists.h"
 #include "shadow/coverage_packed.h"
 #include "shadow/coverage_recovery.h"
@@ -49,15 +50,15 @@ struct state {
     struct adjacency adjacency; /* with recovery */
 };
 
-/* Triangles of a list that may shadow the point and do not hold it, as ways to those that do. */
-static bool recover(const struct state *s, const struct geometry_map *m, const struct map_point *p, const uint32_t *ids,
-                    unsigned count, bool *held, uint32_t *hint)
+/* True: dark. */
+static bool recover(const struct state *s, const struct geometry_map *m, const struct map_point *p,
+                    struct coverage_answer *answer, uint32_t *hint)
 {
-    for (unsigned i = 0; i < count; i++) {
-        enum geometry_verdict verdict = coverage_recover(m, &s->adjacency, ids[i], p, hint);
+    for (unsigned i = 0; i < answer->besides; i++) {
+        enum geometry_verdict verdict = coverage_recover(m, &s->adjacency, &answer->beside[i], p, hint);
         if (verdict == GEOMETRY_BEFORE)
             return true;
-        *held |= verdict != GEOMETRY_ELSEWHERE;
+        answer->held |= verdict != GEOMETRY_ELSEWHERE;
     }
     return false;
 }
@@ -93,31 +94,16 @@ static bool decide_packed(void *state, const struct geometry_map *m, const struc
 static bool decide(void *state, const struct geometry_map *m, const struct map_point *p, const double *values, uint32_t *hint)
 {
     const struct state *s = state;
-    uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y, ids[COVERAGE_NODES_MAX], beside[COVERAGE_NODES_MAX];
+    uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y, ids[COVERAGE_NODES_MAX];
     /* In every list, and enough for most: without making one. */
-    if (geometry_ask(m, m->cells[p->at].triangle, p, hint) == GEOMETRY_BEFORE)
+    if (!coverage_list_made(m, p->at) && geometry_ask(m, m->cells[p->at].triangle, p, hint) == GEOMETRY_BEFORE)
         return false;
     uint32_t list = coverage_list(m, x, y, p->at, nodes_of(values), pool_of(values), hint);
-    unsigned count = coverage_list_triangles(m, x, y, list, ids), besides = 0;
-    bool held = false;
-    for (unsigned i = 0; i < count; i++) {
-        if (ids[i] == p->id) {
-            held = true;
-            continue;
-        }
-        if (!geometry_may_shadow(m, ids[i], p, hint))
-            continue;
-        enum geometry_verdict verdict = geometry_ask(m, ids[i], p, hint);
-        if (verdict == GEOMETRY_BEFORE)
-            return false;
-        if (verdict == GEOMETRY_ELSEWHERE)
-            beside[besides++] = ids[i];
-        else
-            held = true;
-    }
-    if (values[PARAM_RECOVERY] == 1 && recover(s, m, p, beside, besides, &held, hint))
+    struct coverage_answer answer;
+    coverage_ask(m, ids, coverage_list_triangles(m, x, y, list, ids), p, hint, &answer);
+    if (answer.dark || (values[PARAM_RECOVERY] == 1 && recover(s, m, p, &answer, hint)))
         return false;
-    return held || !surrounded(m, p, hint);
+    return answer.held || !surrounded(m, p, hint);
 }
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)

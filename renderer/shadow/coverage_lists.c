@@ -184,6 +184,11 @@ uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, siz
     return list;
 }
 
+bool coverage_list_made(const struct geometry_map *m, size_t at)
+{
+    return atomic_load_explicit((_Atomic uint32_t *)&m->notes[at], memory_order_relaxed) != 0;
+}
+
 unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,
                                  uint32_t out[COVERAGE_NODES_MAX])
 {

@@ -25,6 +25,9 @@ extern const int8_t coverage_pool[COVERAGE_POOL][2];
 uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
                        uint32_t *hint);
 
+/* Whether texel `at` has a list already; which texels have depends on the pixels that asked, so nothing that shows may. */
+bool coverage_list_made(const struct geometry_map *m, size_t at);
+
 /* The triangles of a list: distinct drawn ids, MAP_OFF_EDGE taken off; returns how many. */
 unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,
                                  uint32_t out[COVERAGE_NODES_MAX]);

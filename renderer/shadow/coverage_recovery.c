@@ -13,18 +13,14 @@ static int edge_towards(const struct light_sides *s)
     return most;
 }
 
-enum geometry_verdict coverage_recover(const struct geometry_map *m, const struct adjacency *adjacency, uint32_t id,
-                                       const struct map_point *p, uint32_t *hint)
+enum geometry_verdict coverage_recover(const struct geometry_map *m, const struct adjacency *adjacency,
+                                       const struct coverage_way *from, const struct map_point *p, uint32_t *hint)
 {
-    const struct light_part *part = light_mesh_part(&m->mesh, id, hint);
+    const struct light_part *part = from->part;
     const struct mesh *mesh = &m->mesh.scene->meshes[m->mesh.scene->instances[part->instance].mesh];
-    uint32_t before = SCENE_NONE;
-    double turn = 0;
-    for (int step = 0; step < STEPS_MAX; step++) {
-        struct light_sides s = light_triangle_sides(&m->mesh, part, id, p->x, p->y);
-        if (turn * s.area < 0) /* folded over: the point lies beyond an outline */
-            return GEOMETRY_ELSEWHERE;
-        turn = s.area;
+    struct light_sides s = from->sides;
+    uint32_t before = SCENE_NONE, id = from->id;
+    for (int step = 1; step < STEPS_MAX; step++) {
         int edge = edge_towards(&s);
         if (edge < 0)
             return geometry_ask(m, id, p, hint);
@@ -33,6 +29,12 @@ enum geometry_verdict coverage_recover(const struct geometry_map *m, const struc
             return GEOMETRY_ELSEWHERE;
         before = id;
         id = next + part->first_triangle;
+        if (id == p->id)
+            return GEOMETRY_OWN;
+        double turn = s.area;
+        s = light_triangle_sides(&m->mesh, part, id, p->x, p->y);
+        if (turn * s.area < 0) /* folded over: the point lies beyond an outline */
+            return GEOMETRY_ELSEWHERE;
     }
-    return GEOMETRY_ELSEWHERE;
+    return edge_towards(&s) < 0 ? geometry_ask(m, id, p, hint) : GEOMETRY_ELSEWHERE;
 }

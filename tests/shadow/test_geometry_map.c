@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/job_pool.h"
 #include "made_scene.h"
+#include "shadow/coverage_asks.h"
 #include "shadow/coverage_lists.h"
 #include "shadow/coverage_packed.h"
 #include "shadow/coverage_recovery.h"
@@ -244,6 +245,15 @@ static void test_lists_are_the_same_in_any_order(void **state)
     scene_destroy(scene);
 }
 
+static enum geometry_verdict recover(const struct geometry_map *m, const struct adjacency *adjacency, uint32_t id,
+                                     const struct map_point *p)
+{
+    uint32_t hint = 0;
+    struct coverage_way from = {.part = light_mesh_part(&m->mesh, id, &hint), .id = id};
+    from.sides = light_triangle_sides(&m->mesh, from.part, id, p->x, p->y);
+    return coverage_recover(m, adjacency, &from, p, &hint);
+}
+
 /* From any triangle of a sheet, recovery walks to the one over the point. */
 static void test_recovery_finds_what_no_texel_kept(void **state)
 {
@@ -268,22 +278,84 @@ static void test_recovery_finds_what_no_texel_kept(void **state)
     struct adjacency adjacency;
     build(&m, &s, 0);
     assert_true(adjacency_init(&adjacency, scene, &err));
-    uint32_t hint = 0;
     struct light_triangle t = light_part_triangle(&m.mesh.parts[0], 20);
     struct map_point p = {.n = 0, .id = 129};
     for (int k = 0; k < 3; k++) {
         p.x += t.corner[k]->x / 3;
         p.y += t.corner[k]->y / 3;
     }
-    assert_int_equal(coverage_recover(&m, &adjacency, 20, &p, &hint), GEOMETRY_BEFORE);
-    assert_int_equal(coverage_recover(&m, &adjacency, 4, &p, &hint), GEOMETRY_BEFORE);
-    assert_int_equal(coverage_recover(&m, &adjacency, 128, &p, &hint), GEOMETRY_ELSEWHERE);
+    assert_int_equal(recover(&m, &adjacency, 20, &p), GEOMETRY_BEFORE);
+    assert_int_equal(recover(&m, &adjacency, 4, &p), GEOMETRY_BEFORE);
+    assert_int_equal(recover(&m, &adjacency, 128, &p), GEOMETRY_ELSEWHERE);
     p.id = 20;
-    assert_int_equal(coverage_recover(&m, &adjacency, 4, &p, &hint), GEOMETRY_OWN);
+    assert_int_equal(recover(&m, &adjacency, 4, &p), GEOMETRY_OWN);
     adjacency_finish(&adjacency);
     geometry_map_finish(&m);
     setting_close(&s);
     scene_destroy(scene);
+}
+
+/* coverage_ask() one by one. */
+static struct coverage_answer ask_singly(const struct geometry_map *m, const uint32_t *ids, unsigned count,
+                                         const struct map_point *p)
+{
+    struct coverage_answer out = {0};
+    uint32_t hint = 0;
+    for (unsigned i = 0; i < count; i++) {
+        out.held |= ids[i] == p->id;
+        if (ids[i] == p->id || !geometry_may_shadow(m, ids[i], p, &hint))
+            continue;
+        enum geometry_verdict verdict = geometry_ask(m, ids[i], p, &hint);
+        if (verdict == GEOMETRY_BEFORE)
+            return (struct coverage_answer){.dark = true};
+        if (verdict == GEOMETRY_ELSEWHERE)
+            out.beside[out.besides++].id = ids[i];
+        else
+            out.held = true;
+    }
+    return out;
+}
+
+/* Triangles four at a time say what each of them says: some behind the light, some with holes beside them, lists of any length. */
+static void test_asked_together_as_one_by_one(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {"builtin:dragon:triangles=2000", "builtin:tree", "builtin:hard-11-degenerate"};
+    unsigned dark = 0, beside = 0, held = 0;
+    srand(11);
+    for (size_t k = 0; k < 3; k++) {
+        struct scene *scene = load(scenes[k]);
+        struct light light = light_at(LIGHT_POINT, 0.3, 0.7, 0.2);
+        struct setting s = setting_open(scene, &light, 1, true);
+        struct geometry_map m = {0};
+        build(&m, &s, 0);
+        for (int i = 0; i < 20000; i++) {
+            uint32_t ids[COVERAGE_NODES_MAX], hint = 0;
+            unsigned count = 1 + (unsigned)rand() % COVERAGE_NODES_MAX;
+            const struct light_part *part = &m.mesh.parts[(size_t)rand() % m.mesh.part_count];
+            for (unsigned n = 0; n < count; n++)
+                ids[n] = part->first_triangle + (uint32_t)rand() % part->triangle_count;
+            const struct light_vertex *at = light_part_triangle(part, ids[0]).corner[rand() % 3];
+            struct map_point p = {at->x + (float)(rand() % 64) / 64, at->y, at->n * (0.5f + (float)(rand() % 64) / 64),
+                                  rand() % 2 ? ids[count - 1] : MAP_NONE, 0};
+            struct coverage_answer got, wanted = ask_singly(&m, ids, count, &p);
+            coverage_ask(&m, ids, count, &p, &hint, &got);
+            assert_int_equal(got.dark, wanted.dark);
+            dark += got.dark;
+            if (got.dark)
+                continue;
+            assert_int_equal(got.held, wanted.held);
+            assert_int_equal(got.besides, wanted.besides);
+            for (unsigned n = 0; n < got.besides; n++)
+                assert_int_equal(got.beside[n].id, wanted.beside[n].id);
+            beside += got.besides;
+            held += got.held;
+        }
+        geometry_map_finish(&m);
+        setting_close(&s);
+        scene_destroy(scene);
+    }
+    assert_true(dark > 100 && beside > 100 && held > 100);
 }
 
 static void test_packed_numbers(void **state)
@@ -303,9 +375,13 @@ static void test_packed_numbers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_is_nearer_than_a_texel_says), cmocka_unit_test(test_corners_behind_the_light),
-        cmocka_unit_test(test_the_same_whatever_the_threads),       cmocka_unit_test(test_lists_are_the_same_in_any_order),
-        cmocka_unit_test(test_recovery_finds_what_no_texel_kept),   cmocka_unit_test(test_packed_numbers),
+        cmocka_unit_test(test_nothing_is_nearer_than_a_texel_says),
+        cmocka_unit_test(test_corners_behind_the_light),
+        cmocka_unit_test(test_the_same_whatever_the_threads),
+        cmocka_unit_test(test_lists_are_the_same_in_any_order),
+        cmocka_unit_test(test_recovery_finds_what_no_texel_kept),
+        cmocka_unit_test(test_asked_together_as_one_by_one),
+        cmocka_unit_test(test_packed_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
