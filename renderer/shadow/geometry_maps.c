@@ -16,7 +16,7 @@
 
 #define INLINE static inline __attribute__((always_inline))
 
-enum { ROWS = 8 }; /* picture rows a job */
+enum { ROWS = 16, COLUMNS = 64 }; /* picture rows a job; worked on together: what they read of a map stays near */
 
 bool geometry_maps_prepare(struct geometry_maps *g, const struct shadow_input *in, struct error *err)
 {
@@ -39,13 +39,12 @@ void geometry_maps_finish(struct geometry_maps *g)
 {
     for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
         geometry_map_finish(&g->maps[i]);
-    free(g->visibility);
     memset(g, 0, sizeof *g);
 }
 
 size_t geometry_maps_bytes(const struct geometry_maps *g)
 {
-    size_t sum = g->pixel_room * sizeof *g->visibility;
+    size_t sum = 0;
     for (unsigned i = 0; i < SHADOW_MAPS_MAX; i++)
         sum += geometry_map_bytes(&g->maps[i]);
     return sum;
@@ -79,7 +78,7 @@ struct resolve_job {
     float *visibility;
     struct placed_map maps[SHADOW_MAPS_MAX];
     unsigned map_count;
-    uint32_t width, height;
+    uint32_t width, top, bottom; /* the rows that hold surfaces */
     struct pixel_rays rays;
     struct pixel_light light;
 };
@@ -218,10 +217,11 @@ INLINE void resolve_run(const struct resolve_job *job, uint32_t x, uint32_t y, u
 
 INLINE void resolve_rows_inline(const struct resolve_job *job, size_t index)
 {
-    uint32_t end = ((uint32_t)index + 1) * ROWS < job->height ? ((uint32_t)index + 1) * ROWS : job->height, hint = 0;
-    for (uint32_t y = (uint32_t)index * ROWS; y < end; y++)
-        for (uint32_t x = 0; x < job->width; x += CONSERVATIVE_LANES)
-            resolve_run(job, x, y, &hint);
+    uint32_t top = job->top + (uint32_t)index * ROWS, bottom = top + ROWS < job->bottom ? top + ROWS : job->bottom, hint = 0;
+    for (uint32_t left = 0; left < job->width; left += COLUMNS)
+        for (uint32_t y = top; y < bottom; y++)
+            for (uint32_t x = left; x < left + COLUMNS && x < job->width; x += CONSERVATIVE_LANES)
+                resolve_run(job, x, y, &hint);
 }
 
 #ifdef __x86_64__
@@ -244,37 +244,26 @@ static void resolve_rows(void *context, size_t index, unsigned worker)
     resolve_rows_inline(context, index);
 }
 
-static bool out_of_memory(struct error *err)
-{
-    return error_set(err, ERROR_TRY_AGAIN, NULL, "out of memory for a picture's visibility");
-}
-
 bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *in, geometry_decide *decide, void *state,
                            struct error *err)
 {
-    size_t pixels = (size_t)in->view->width * in->view->height;
-    if (g->pixel_room < pixels) {
-        free(g->visibility);
-        g->visibility = malloc(pixels * sizeof *g->visibility);
-        g->pixel_room = g->visibility ? pixels : 0;
-        if (!g->visibility)
-            return out_of_memory(err);
-    }
     struct resolve_job job = {.in = in,
                               .decide = decide,
                               .state = state,
-                              .visibility = g->visibility,
+                              .visibility = gbuffer_values(in->gbuffer, err),
                               .map_count = g->count,
                               .width = in->view->width,
-                              .height = in->view->height};
+                              .top = in->gbuffer->tiles.top,
+                              .bottom = in->gbuffer->tiles.bottom};
     job.ids = gbuffer_read_ids(in->gbuffer, in->gl, err);
     job.surfaces = job.ids ? gbuffer_read_pixels(in->gbuffer, in->draw, err) : NULL;
-    if (!job.surfaces)
+    if (!job.surfaces || !job.visibility)
         return false;
     for (unsigned i = 0; i < g->count; i++)
         job.maps[i] = place_map(&g->maps[i], in->view->eye);
     job.rays = pixel_rays_of(in->view);
     job.light = pixel_light_of(in->light, in->view->eye);
-    job_pool_for(in->pool, (job.height + ROWS - 1) / ROWS, resolve_rows, &job);
-    return pixel_upload(in, g->visibility, err);
+    if (job.top < job.bottom)
+        job_pool_for(in->pool, (job.bottom - job.top + ROWS - 1) / ROWS, resolve_rows, &job);
+    return pixel_upload(in, job.visibility, err);
 }

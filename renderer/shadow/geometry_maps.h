@@ -16,8 +16,6 @@ struct pixel;
 struct geometry_maps {
     struct geometry_map maps[SHADOW_MAPS_MAX];
     unsigned count;
-    float *visibility; /* of the last picture */
-    size_t pixel_room;
 };
 
 /* A receiver on a map. */
