@@ -5,17 +5,20 @@
 #define INLINE static inline __attribute__((always_inline))
 
 enum { FOUR = 4 };
-typedef double four_doubles __attribute__((vector_size(32)));
-typedef int32_t four_ints __attribute__((vector_size(16)));
+typedef double four_doubles __attribute__((vector_size(32), may_alias));
+typedef int32_t four_ints __attribute__((vector_size(16), may_alias));
 
 /* Four triangles as seen from a point. */
 struct four {
     uint32_t id[FOUR];
     const struct light_part *part[FOUR];
     struct light_triangle triangle[FOUR];
-    int count;                                     /* lanes beyond repeat the first */
-    double edge[3][FOUR], area[FOUR], sum[FOUR];   /* edge k: from corner k on, as the area turns */
-    int32_t may[FOUR], inside[FOUR], before[FOUR]; /* nonzero: true */
+    int count; /* lanes beyond repeat the first */
+    /* Edge k: from corner k on, as the area turns. */
+    double edge[3][FOUR] __attribute__((aligned(32))), area[FOUR] __attribute__((aligned(32)));
+    /* Nonzero: true. */
+    int32_t may[FOUR] __attribute__((aligned(16))), inside[FOUR] __attribute__((aligned(16))),
+        before[FOUR] __attribute__((aligned(16)));
 };
 
 /* Corners of four, transposed. */

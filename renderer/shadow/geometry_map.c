@@ -131,6 +131,10 @@ INLINE void find_homes(const struct geometry_map *m, const struct light_triangle
     /* Sums, since a lane that is not a number is wild. */
     lanes_float sum = at.x[0] + at.x[1] + at.x[2];
     lanes_int few = (left >= 0) & (top >= 0) & (right < side) & (bottom < side) & (sum == sum);
+    /* Others become 0: what a wild lane makes as a whole number is anything. */
+    lanes_float *const ends[] = {&left, &right, &top, &bottom};
+    for (int i = 0; i < 4; i++)
+        *ends[i] = (lanes_float)((lanes_int)*ends[i] & few);
     lanes_int column = __builtin_convertvector(left, lanes_int) / (int32_t)MAP_TILE,
               row = __builtin_convertvector(top, lanes_int) / (int32_t)MAP_TILE;
     lanes_int more = __builtin_convertvector(right, lanes_int) / (int32_t)MAP_TILE - column,
@@ -138,7 +142,7 @@ INLINE void find_homes(const struct geometry_map *m, const struct light_triangle
     few &= (more <= 1) & (lower <= 1);
     lanes_float area = (at.x[1] - at.x[0]) * (at.y[2] - at.y[0]) - (at.x[2] - at.x[0]) * (at.y[1] - at.y[0]);
     lanes_int bin = (row * (int32_t)m->tiles + column) * BINS + ((area < 0) + 1);
-    bin |= (more << 30) | (lower << 31);
+    bin |= (lanes_int)((lanes_uint)(more & few) << 30 | (lanes_uint)(lower & few) << 31);
     *(lanes_int_loose *)homes = (bin & few) | (~few & (int32_t)HOME_MANY);
 }
 
