@@ -7,6 +7,7 @@
 #include "blocks.h"
 #include "draw/producer.h"
 #include "draw/put_vec4.h"
+#include "gl/program.h"
 #include "passes/camera.h"
 #include "render_scene.h"
 
@@ -67,6 +68,14 @@ static bool traces_maps(const struct render_scene *s, const struct render_settin
                                                   : settings->map_pass == CAMERA_PASS_TRACED;
 }
 
+/* Whoever gives a folder of shaders wants to see them at work. */
+static bool works_on_cpu(const struct render_scene *s, const struct render_settings *settings)
+{
+    return settings->resolve_pass == RESOLVE_PASS_AUTO
+               ? producer_resolves_on_cpu(&s->draw) && !gl_programs_are_files(s->renderer->programs)
+               : settings->resolve_pass == RESOLVE_PASS_CPU;
+}
+
 static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
                                      unsigned light)
 {
@@ -76,8 +85,7 @@ static struct shadow_input input_for(struct renderer *r, struct render_scene *s,
     in.viewer = settings->viewer;
     in.view = &r->gbuffer.view.view;
     in.trace_maps = traces_maps(s, settings);
-    in.resolve_on_cpu = settings->resolve_pass == RESOLVE_PASS_AUTO ? producer_resolves_on_cpu(&s->draw)
-                                                                    : settings->resolve_pass == RESOLVE_PASS_CPU;
+    in.resolve_on_cpu = works_on_cpu(s, settings);
     in.memory = settings->light_count ? settings->memory / settings->light_count : 0;
     return in;
 }
@@ -98,37 +106,18 @@ static bool prepare_lights(struct renderer *r, struct render_scene *s, const str
     return true;
 }
 
-static bool resolve_lights(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
-                           const struct shadow_input *inputs, struct frame_info *info, struct error *err)
-{
-    const struct view *view = &r->gbuffer.view.view;
-    uint32_t layers = settings->light_count ? (uint32_t)settings->light_count : 1;
-    if (!gl_texture_size_layers(&r->visibility, &r->gl, GL_R32F, view->width, view->height, layers, err))
-        return false;
-    for (unsigned i = 0; i < settings->light_count; i++) {
-        gl_target_attach(&r->visibility_target, &r->visibility, NULL, i);
-        gl_target_bind(&r->visibility_target, view->width, view->height);
-        static const GLfloat dark[4];
-        glClearNamedFramebufferfv(r->visibility_target.id, GL_COLOR, 0, dark);
-        if (!bind_light(r, &inputs[i], settings->system->param_count, err) ||
-            !settings->system->resolve(s->current[i]->state, &inputs[i], err))
-            return false;
-    }
-    mark(r, PASS_RESOLVE, info);
-    return true;
-}
-
-static bool run_lighting(struct renderer *r, struct render_scene *s, const struct render_settings *settings, unsigned aa_side,
-                         struct frame_info *info, struct error *err)
+static struct lighting_input lighting_of(struct renderer *r, struct render_scene *s, const struct render_settings *settings,
+                                         unsigned aa_side)
 {
     double lux = lighting_illuminance(s->scene, settings->lights, settings->light_count);
     /* auto: white facing all lights at the scene's centre becomes 1. */
     double automatic = lux > 0 ? M_PI / lux : 1;
     bool plain = settings->tonemap == TONEMAP_NONE || settings->show != SHOW_SHADED;
-    struct lighting_input in = {
+    return (struct lighting_input){
         .scene = &s->draw,
         .gbuffer = &r->gbuffer,
         .visibility = &r->visibility,
+        .pool = r->pool,
         .lights = settings->lights,
         .light_count = settings->light_count,
         .show = (enum lighting_show)settings->show,
@@ -139,9 +128,24 @@ static bool run_lighting(struct renderer *r, struct render_scene *s, const struc
         .ambient = settings->ambient * (lux > 0 ? lux / M_PI : 1),
         .aa_side = aa_side,
     };
-    bool ok = lighting_run(&r->lighting, &in, err);
-    mark(r, PASS_LIGHTING, info);
-    return ok;
+}
+
+static bool resolve_lights(struct renderer *r, const struct render_settings *settings, struct shadow_input *inputs,
+                           const struct light_state *const *states, bool keep, struct frame_info *info, struct error *err)
+{
+    const struct view *view = &r->gbuffer.view.view;
+    uint32_t layers = settings->light_count ? (uint32_t)settings->light_count : 1;
+    if (!visibility_begin(&r->visibility, &r->gl, view->width, view->height, layers, &r->gbuffer.tiles, keep, err))
+        return false;
+    for (unsigned i = 0; i < settings->light_count; i++) {
+        visibility_bind(&r->visibility, i);
+        inputs[i].layer = &r->visibility.layers[i];
+        if (!bind_light(r, &inputs[i], settings->system->param_count, err) ||
+            !settings->system->resolve(states[i]->state, &inputs[i], err))
+            return false;
+    }
+    mark(r, PASS_RESOLVE, info);
+    return true;
 }
 
 static void describe_lights(const struct render_scene *s, const struct render_settings *settings, struct frame_info *info)
@@ -171,11 +175,16 @@ bool frame_render(struct renderer *r, struct render_scene *s, const struct rende
     struct view view = view_from_camera(&settings->camera, settings->width * aa_side, settings->height * aa_side);
     view_limit_far(&view, &s->scene->bounds);
     struct shadow_input inputs[RENDERER_LIGHTS_MAX];
+    const struct lighting_input lighting = lighting_of(r, s, settings, aa_side);
+    bool keep = works_on_cpu(s, settings) && lighting_fits_cpu(&lighting);
     gl_timer_begin(&r->timer, settings->finish_each_pass);
     bool ok = gbuffer_begin(&r->gbuffer, &s->draw, &view, err) && run_camera(r, s, settings, info, err) &&
-              prepare_lights(r, s, settings, inputs, info, err) && resolve_lights(r, s, settings, inputs, info, err) &&
-              run_lighting(r, s, settings, aa_side, info, err);
-    if (ok)
+              prepare_lights(r, s, settings, inputs, info, err) &&
+              resolve_lights(r, settings, inputs, (const struct light_state *const *)s->current, keep, info, err) &&
+              lighting_run(&r->lighting, &lighting, err);
+    if (ok) {
+        mark(r, PASS_LIGHTING, info);
         describe_lights(s, settings, info);
+    }
     return ok;
 }

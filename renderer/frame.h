@@ -7,6 +7,7 @@
 #include "gl/timer.h"
 #include "passes/gbuffer.h"
 #include "passes/lighting.h"
+#include "passes/visibility.h"
 #include "renderer.h"
 
 struct render_scene;
@@ -26,8 +27,7 @@ struct renderer {
     struct gl_timer timer;
     struct gl_readback readback;
     struct gbuffer gbuffer;
-    struct gl_texture visibility; /* R32F, a layer a light */
-    struct gl_target visibility_target;
+    struct visibility visibility;
     struct gl_buffer light_block, params_block;
     struct lighting lighting;
     struct in_flight frames[RENDERER_IN_FLIGHT];

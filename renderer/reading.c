@@ -1,5 +1,4 @@
 /* What a frame left behind, read back for measuring. */
-#include <epoxy/gl.h>
 #include <string.h>
 
 #include "frame.h"
@@ -7,13 +6,7 @@
 
 bool renderer_read_visibility(struct renderer *r, unsigned light, float *out)
 {
-    struct error err = {0};
-    const struct gl_texture *t = &r->visibility;
-    if (light >= t->layers)
-        return false;
-    glGetTextureSubImage(t->id, 0, 0, 0, (GLint)light, (GLsizei)t->width, (GLsizei)t->height, 1, GL_RED, GL_FLOAT,
-                         (GLsizei)((size_t)t->width * t->height * sizeof *out), out);
-    return gl_check(&r->gl, &err);
+    return visibility_read(&r->visibility, &r->gl, light, out);
 }
 
 bool renderer_read_ids(struct renderer *r, uint32_t *out)

@@ -61,8 +61,7 @@ void renderer_destroy(struct renderer *r)
     lighting_finish(&r->lighting);
     gl_buffer_finish(&r->light_block);
     gl_buffer_finish(&r->params_block);
-    gl_target_finish(&r->visibility_target);
-    gl_texture_finish(&r->visibility);
+    visibility_finish(&r->visibility);
     gbuffer_finish(&r->gbuffer);
     gl_readback_finish(&r->readback);
     gl_timer_finish(&r->timer);

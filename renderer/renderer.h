@@ -66,8 +66,9 @@ struct render_settings {
     enum tonemap tonemap;
     unsigned aa; /* samples a pixel: 1, 4 or 16 */
     enum camera_pass camera_pass;
-    enum camera_pass map_pass;      /* the same choice for depth maps from lights */
-    enum resolve_pass resolve_pass; /* where systems that can do either compare pixels with depth maps */
+    enum camera_pass map_pass; /* the same choice for depth maps from lights */
+    enum resolve_pass
+        resolve_pass; /* where comparisons with depth maps and lighting are done; auto: on the CPU where the device is one */
     enum pixel_format format;
     uint32_t viewer;       /* whose picture: a light that moves takes along what was built for it, but only from its own viewer */
     size_t memory;         /* bytes that the lights' structures may take together; 0: no limit */

@@ -195,3 +195,5 @@ bool gl_programs_reload(struct gl_programs *programs)
     }
     return true;
 }
+
+bool gl_programs_are_files(const struct gl_programs *programs) { return programs->shader_dir != NULL; }

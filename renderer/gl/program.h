@@ -23,6 +23,9 @@ struct gl_program *gl_programs_get(struct gl_programs *programs, const char *ver
 /* Makes it current. */
 void gl_program_use(const struct gl_program *program);
 
+/* They come from a shader_dir. */
+bool gl_programs_are_files(const struct gl_programs *programs);
+
 /* With a shader_dir: relinks the programs whose files changed; a program that fails keeps its old form and its log is shown.
  * True when any changed. */
 bool gl_programs_reload(struct gl_programs *programs);

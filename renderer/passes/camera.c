@@ -19,7 +19,7 @@ bool camera_rasterize(struct gbuffer *g, struct draw_scene *scene, struct error 
     if (!gl_texture_size(&g->depth, scene->gl, GL_DEPTH_COMPONENT32F, width, height, err))
         return false;
     g->traced = g->pixels_done = false;
-    g->ids_uploaded = true;
+    g->ids_uploaded = g->pixels_uploaded = true;
     if (!tiles_set_all(&g->tiles, width, height, err))
         return false;
     gl_target_attach(&g->target, &g->ids, &g->depth, 0);
@@ -53,14 +53,9 @@ bool camera_trace(struct gbuffer *g, struct draw_scene *scene, const struct trac
     g->traced = true;
     g->ids_uploaded = false;
     g->pixels_done = scene->plain;
+    g->pixels_uploaded = !scene->plain;
     tracer_camera(tracer, &g->view.view, pool, g->cpu_ids, scene->plain ? g->cpu_pixels : NULL);
-    if (!tiles_set_occupied(&g->tiles, g->cpu_ids, g->ids.width, g->ids.height, pool, err))
-        return false;
-    if (scene->plain && g->tiles.count)
-        glTextureSubImage2D(g->pixels.id, 0, 0, (GLint)g->tiles.top, (GLsizei)g->ids.width,
-                            (GLsizei)(g->tiles.bottom - g->tiles.top), GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                            g->cpu_pixels + (size_t)g->tiles.top * g->ids.width);
-    return gl_check(scene->gl, err);
+    return tiles_set_occupied(&g->tiles, g->cpu_ids, g->ids.width, g->ids.height, pool, err);
 }
 
 bool camera_surfaces(struct gbuffer *g, struct draw_scene *scene, struct error *err)

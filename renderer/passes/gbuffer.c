@@ -10,6 +10,7 @@
 #include "draw/put_vec4.h"
 #include "gl/context.h"
 #include "scene/pixel.h"
+#include "scene/pixel_rays.h"
 
 static uint32_t search_steps(size_t count)
 {
@@ -22,19 +23,15 @@ static uint32_t search_steps(size_t count)
 static bool upload_view(struct gbuffer *g, struct draw_scene *scene, struct error *err)
 {
     const struct view *v = &g->view.view;
-    struct dvec3 o, d, ox, dx, oy, dy;
-    view_ray(v, 0.5, 0.5, &o, &d);
-    view_ray(v, 0.5 + v->width, 0.5, &ox, &dx);
-    view_ray(v, 0.5, 0.5 + v->height, &oy, &dy);
-    double w = 1.0 / v->width, h = 1.0 / v->height;
+    const struct pixel_rays r = pixel_rays_of(v);
     struct view_block block = {0};
-    put_vec4(block.ray_origin, dvec3_sub(o, v->eye), 0);
-    put_vec4(block.ray_origin_dx, dvec3_scale(dvec3_sub(ox, o), w), 0);
-    put_vec4(block.ray_origin_dy, dvec3_scale(dvec3_sub(oy, o), h), 0);
-    put_vec4(block.ray_direction, d, 0);
-    put_vec4(block.ray_direction_dx, dvec3_scale(dvec3_sub(dx, d), w), 0);
-    put_vec4(block.ray_direction_dy, dvec3_scale(dvec3_sub(dy, d), h), 0);
-    put_vec4(block.view_forward, v->forward, (v->top - v->bottom) * h);
+    memcpy(block.ray_origin, r.origin, sizeof r.origin);
+    memcpy(block.ray_origin_dx, r.origin_dx, sizeof r.origin_dx);
+    memcpy(block.ray_origin_dy, r.origin_dy, sizeof r.origin_dy);
+    memcpy(block.ray_direction, r.direction, sizeof r.direction);
+    memcpy(block.ray_direction_dx, r.direction_dx, sizeof r.direction_dx);
+    memcpy(block.ray_direction_dy, r.direction_dy, sizeof r.direction_dy);
+    put_vec4(block.view_forward, v->forward, (v->top - v->bottom) / v->height);
     put_vec4(block.view_clip, dvec3(v->near, isinf(v->far) ? 0 : v->far, v->orthographic), 0);
     uvec4 counts = {(uint32_t)scene->scene->instance_count, search_steps(scene->scene->instance_count), 0, 0};
     memcpy(block.view_counts, counts, sizeof counts);
@@ -67,8 +64,13 @@ void gbuffer_finish(struct gbuffer *g)
     memset(g, 0, sizeof *g);
 }
 
-void gbuffer_bind(const struct gbuffer *g, const struct draw_scene *scene)
+void gbuffer_bind(struct gbuffer *g, const struct draw_scene *scene)
 {
+    if (!g->pixels_uploaded && g->tiles.top < g->tiles.bottom)
+        glTextureSubImage2D(g->pixels.id, 0, 0, (GLint)g->tiles.top, (GLsizei)g->ids.width,
+                            (GLsizei)(g->tiles.bottom - g->tiles.top), GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                            g->cpu_pixels + (size_t)g->tiles.top * g->ids.width);
+    g->pixels_uploaded = true;
     draw_scene_bind(scene);
     gl_buffer_bind_texture(&g->view.rows, UNIT_ROWS);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, g->view_block.id);

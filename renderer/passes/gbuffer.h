@@ -33,18 +33,19 @@ struct gbuffer {
     size_t read_room;
     float *values; /* scratch, likewise */
     size_t value_room;
-    bool pixels_read;  /* read_pixels is the last picture's */
-    bool traced;       /* the last picture's producer */
-    bool ids_uploaded; /* ids is the last picture's */
-    bool pixels_done;  /* pixels is the last picture's */
+    bool pixels_read;     /* read_pixels is the last picture's */
+    bool traced;          /* the last picture's producer */
+    bool ids_uploaded;    /* ids is the last picture's */
+    bool pixels_done;     /* they are the last picture's, be it in pixels or in cpu_pixels */
+    bool pixels_uploaded; /* pixels has them */
 };
 
 /* Sizes everything for `view` and uploads its blocks. */
 bool gbuffer_begin(struct gbuffer *g, struct draw_scene *scene, const struct view *view, struct error *err);
 void gbuffer_finish(struct gbuffer *g);
 
-/* Binds view block, ids, pixels, emission, rows and the scene for a full-screen pass. */
-void gbuffer_bind(const struct gbuffer *g, const struct draw_scene *scene);
+/* Binds view block, ids, pixels, emission, rows and the scene for a full-screen pass; traced pixels go to the device now. */
+void gbuffer_bind(struct gbuffer *g, const struct draw_scene *scene);
 
 /* Makes ids valid on the GPU. */
 bool gbuffer_need_ids(struct gbuffer *g, struct gl_context *gl, struct error *err);

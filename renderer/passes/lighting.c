@@ -3,14 +3,18 @@
 #include <epoxy/gl.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "blocks.h"
 #include "draw/draw_scene.h"
 #include "draw/put_vec4.h"
 #include "gl/context.h"
 #include "gl/program.h"
 #include "passes/gbuffer.h"
+#include "passes/lighting_pixels.h"
+#include "passes/visibility.h"
 
 _Static_assert(LIGHT_DIRECTIONAL == LIGHT_KIND_DIRECTIONAL && LIGHT_POINT == LIGHT_KIND_POINT && LIGHT_SPOT == LIGHT_KIND_SPOT,
                "blocks.h");
@@ -46,7 +50,7 @@ static const float *background_of(const struct lighting_input *in)
     return in->display == LIGHTING_LINEAR ? linear : srgb;
 }
 
-static bool upload_block(struct lighting *out, const struct lighting_input *in, struct error *err)
+static struct lights_block block_of(const struct lighting_input *in)
 {
     struct lights_block block = {0};
     struct dvec3 eye = in->gbuffer->view.view.eye;
@@ -61,7 +65,7 @@ static bool upload_block(struct lighting *out, const struct lighting_input *in, 
     double unit = dbox_radius(&in->scene->scene->bounds);
     put_vec4(block.picture, dvec3(in->exposure, in->ambient, in->aa_side), unit > 0 ? unit : 1);
     memcpy(block.background, background_of(in), sizeof block.background);
-    return gl_buffer_set(&out->block, in->scene->gl, &block, sizeof block, 0, err);
+    return block;
 }
 
 /* What all lights are; -1 if they differ. */
@@ -104,6 +108,47 @@ static bool downsample(struct lighting *l, const struct lighting_input *in, stru
     return true;
 }
 
+bool lighting_fits_cpu(const struct lighting_input *in)
+{
+    return in->show == LIGHTING_SHADED && in->display != LIGHTING_LINEAR && in->aa_side == 1 && !in->scene->has_emission;
+}
+
+static bool reserve_picture(struct lighting *l, size_t pixels, struct error *err)
+{
+    if (l->room >= pixels)
+        return true;
+    free(l->picture);
+    l->picture = malloc(pixels * sizeof *l->picture);
+    l->room = l->picture ? pixels : 0;
+    return l->picture || error_set(err, ERROR_TRY_AGAIN, "size", "out of memory for a picture of %zu pixels", pixels);
+}
+
+static bool run_on_cpu(struct lighting *l, const struct lighting_input *in, struct error *err)
+{
+    struct gl_context *gl = in->scene->gl;
+    uint32_t width = in->gbuffer->ids.width, height = in->gbuffer->ids.height;
+    const struct lights_block block = block_of(in);
+    struct lighting_pixels job = {.width = width,
+                                  .height = height,
+                                  .top = in->gbuffer->tiles.top,
+                                  .bottom = in->gbuffer->tiles.bottom,
+                                  .rays = pixel_rays_of(&in->gbuffer->view.view),
+                                  .lights = &block,
+                                  .light_count = in->light_count,
+                                  .aces = in->display == LIGHTING_ACES};
+    if (!gl_texture_size(&l->result, gl, GL_RGBA8, width, height, err) || !reserve_picture(l, (size_t)width * height, err) ||
+        !(job.pixels = gbuffer_read_pixels(in->gbuffer, in->scene, err)))
+        return false;
+    job.picture = l->picture;
+    for (size_t i = 0; i < in->light_count; i++)
+        job.visibility[i] = in->visibility->layers[i].values;
+    lighting_pixels_run(&job, in->pool);
+    glTextureSubImage2D(l->result.id, 0, 0, 0, (GLsizei)width, (GLsizei)height, GL_RGBA, GL_UNSIGNED_BYTE, l->picture);
+    gl_target_attach(&l->target, &l->result, NULL, 0);
+    gl_target_bind(&l->target, width, height);
+    return gl_check(gl, err);
+}
+
 bool lighting_run(struct lighting *l, const struct lighting_input *in, struct error *err)
 {
     struct gl_context *gl = in->scene->gl;
@@ -111,9 +156,13 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
     static const float nothing[4];
     bool many = in->aa_side > 1;
     bool linear = in->display == LIGHTING_LINEAR;
+    if (lighting_fits_cpu(in) && visibility_is_on_cpu(in->visibility))
+        return run_on_cpu(l, in, err);
     GLenum format = linear ? GL_RGBA32F : GL_RGBA8, samples_format = linear ? GL_RGBA32F : GL_RGBA16F;
+    const struct lights_block block = block_of(in);
     if (!gl_texture_size(&l->result, gl, format, width / in->aa_side, height / in->aa_side, err) ||
-        (many && !gl_texture_size(&l->samples, gl, samples_format, width, height, err)) || !upload_block(l, in, err))
+        (many && !gl_texture_size(&l->samples, gl, samples_format, width, height, err)) ||
+        !gl_buffer_set(&l->block, gl, &block, sizeof block, 0, err) || !visibility_need_texture(in->visibility, gl, err))
         return false;
     struct gl_program *program = lighting_program(in, err);
     if (!program)
@@ -124,7 +173,7 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
     gl_target_bind(&l->target, width, height);
     gl_program_use(program);
     gbuffer_bind(in->gbuffer, in->scene);
-    gl_texture_bind(in->visibility, UNIT_VISIBILITY);
+    gl_texture_bind(&in->visibility->texture, UNIT_VISIBILITY);
     glBindBufferBase(GL_UNIFORM_BUFFER, 5, l->block.id);
     glClearNamedFramebufferfv(l->target.id, GL_COLOR, 0, many ? nothing : background_of(in));
     tiles_draw(&in->gbuffer->tiles, in->scene->vertex_array);
@@ -137,5 +186,6 @@ void lighting_finish(struct lighting *l)
     gl_texture_finish(&l->samples);
     gl_texture_finish(&l->result);
     gl_target_finish(&l->target);
+    free(l->picture);
     memset(l, 0, sizeof *l);
 }

@@ -11,6 +11,8 @@
 struct draw_scene;
 struct error;
 struct gbuffer;
+struct job_pool;
+struct visibility;
 
 /* As in renderer.h (checked there). */
 enum lighting_show { LIGHTING_SHADED, LIGHTING_VISIBILITY, LIGHTING_DEPTH, LIGHTING_NORMAL, LIGHTING_ID };
@@ -19,7 +21,8 @@ enum lighting_display { LIGHTING_LINEAR, LIGHTING_SRGB, LIGHTING_ACES };
 struct lighting_input {
     struct draw_scene *scene;
     struct gbuffer *gbuffer;
-    const struct gl_texture *visibility; /* a layer a light */
+    struct visibility *visibility; /* a layer a light */
+    struct job_pool *pool;
     const struct light *lights;
     size_t light_count;
     enum lighting_show show;
@@ -34,7 +37,12 @@ struct lighting {
     struct gl_texture samples; /* at the gbuffer's size, RGBA16F, or RGBA32F if display is linear; aa_side > 1 only */
     struct gl_texture result;
     struct gl_target target; /* bound, with `result`, when lighting_run() returns */
+    uint32_t *picture;       /* `result` as made on the CPU */
+    size_t room;             /* its pixels */
 };
+
+/* True if the CPU can do it (lighting_pixels.h); it does, where all of the visibility is there. */
+bool lighting_fits_cpu(const struct lighting_input *in);
 
 /* Writes `result`: RGBA32F if display is linear, else RGBA8. */
 bool lighting_run(struct lighting *l, const struct lighting_input *in, struct error *err);

@@ -5,7 +5,7 @@
 
 #include "scene/pixel.h"
 #include "shadow/depth_pass.h"
-#include "shadow/lanes.h"
+#include "base/lanes.h"
 
 struct vector_lanes {
     lanes x, y, z;

@@ -10,7 +10,7 @@
 #include "draw/draw_scene.h"
 #include "draw/put_vec4.h"
 #include "gl/context.h"
-#include "shadow/lanes.h"
+#include "base/lanes.h"
 #include "trace/tracer.h"
 
 static bool rasterize_map(struct light_maps *m, const struct shadow_input *in, unsigned map, unsigned layer, struct error *err)

@@ -2,12 +2,8 @@
  * shaders/receiver.glsl has them, in the same single precision, and the way of the values to the visibility buffer. */
 #pragma once
 
+#include "scene/pixel_rays.h"
 #include "shadow/shadow.h"
-
-/* The ray through the centre of pixel (x, y), relative to the camera's eye: origin + x origin_dx + y origin_dy + depth (direction + ...). */
-struct pixel_rays {
-    float origin[3], origin_dx[3], origin_dy[3], direction[3], direction_dx[3], direction_dy[3];
-};
 
 struct pixel_light {
     enum light_kind kind;
@@ -15,7 +11,6 @@ struct pixel_light {
     float axis[3], cosine, range2;
 };
 
-struct pixel_rays pixel_rays_of(const struct view *view);
 struct pixel_light pixel_light_of(const struct light *light, struct dvec3 camera_eye);
 void pixel_put(float out[3], struct dvec3 v);
 

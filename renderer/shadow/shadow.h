@@ -17,6 +17,7 @@ struct gl_texture;
 struct job_pool;
 struct reference;
 struct tracer;
+struct visibility_layer;
 struct gbuffer;
 struct draw_scene;
 struct gl_context;
@@ -66,6 +67,9 @@ struct shadow_input {
     const struct tracer *(*tracer)(void *owner, struct error *err);
     const struct reference *(*reference)(void *owner, struct error *err);
     void *owner;
+    struct visibility_layer *
+        layer; /* what resolve fills, in place of the framebuffer (passes/visibility.h), where it has room and the system works on
+                                     * the CPU; NULL outside resolve */
     bool trace_maps;     /* make depth maps by tracing (draw/producer.h) */
     bool resolve_on_cpu; /* where a system can do either (draw/producer.h) */
     size_t memory;       /* bytes that a light's structure may take; 0: no limit */

@@ -1,0 +1,5 @@
+#ifdef __AVX2__
+#include "passes/lighting_lanes.h"
+
+void lighting_row_avx2(const struct lighting_pixels *job, uint32_t y, uint32_t background) { light_row(job, y, background); }
+#endif
