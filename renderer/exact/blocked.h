@@ -87,6 +87,7 @@ struct group {
     bool anywhere;            /* it need not lie in its triangle: the camera pass may round */
     bool certain;             /* the receiver's lines say where its points are */
     struct receiver *collect; /* put candidates there instead of trying them */
+    struct blockers blockers; /* what has taken samples out of `open` */
 };
 
 static inline struct sample_ray group_ray(const struct group *g, unsigned sample)
@@ -173,15 +174,9 @@ static inline void group_collect(struct group *g, uint32_t id)
     r->candidates[r->candidate_count++] = id;
 }
 
-/* `certain_to_try`: cannot_shadow() has been asked. */
-static inline void group_try(struct group *g, uint32_t id, bool certain_to_try)
+static inline void group_try_occluder(struct group *g, const struct occluder *o)
 {
     struct pixel_lines p = {.g = {0}};
-    if (!certain_to_try && cannot_shadow(g->receiver, g->job, id, g->anywhere))
-        return;
-    const struct occluder *o = occluder_get(g->scratch, g->job, id);
-    if (o->side == 0)
-        return;
     g->scratch->counts.tests++;
     if (!g->certain) {
         try_one_by_one(g, o, &p, 0, g->open, false);
@@ -199,6 +194,40 @@ static inline void group_try(struct group *g, uint32_t id, bool certain_to_try)
         return;
     struct samples_sure sure = whole > 0 ? (struct samples_sure){~0u, 0} : evaluate(g->scratch, &p, 4);
     try_one_by_one(g, o, &p, sure.inside & g->open, g->open & ~(sure.inside | sure.outside), true);
+}
+
+/* `certain_to_try`: cannot_shadow() has been asked, or does not matter. */
+static inline void group_try(struct group *g, uint32_t id, bool certain_to_try)
+{
+    if (!certain_to_try && cannot_shadow(g->receiver, g->job, id, g->anywhere))
+        return;
+    const struct occluder *o = occluder_get(g->scratch, g->job, id);
+    uint32_t before = g->open;
+    if (o->side == 0)
+        return;
+    group_try_occluder(g, o);
+    if (g->open != before && g->blockers.count < BLOCKERS_KEPT)
+        g->blockers.ids[g->blockers.count++] = id;
+}
+
+/* Tries what shadowed all of the receiver elsewhere, as long as it shadows something here. */
+static inline void group_try_recent(struct group *g)
+{
+    const struct blockers *recent = &g->receiver->recent;
+    unsigned useless = 0;
+    for (unsigned i = 0; i < recent->count && g->open && useless < 2; i++) {
+        uint32_t before = g->open;
+        group_try(g, recent->ids[i], true);
+        useless += g->open == before;
+    }
+}
+
+/* Remembers for the receiver's other pixels, and for other pictures, what shadowed this one wholly. */
+static inline void group_was_shadowed(const struct group *g, struct receiver *r)
+{
+    r->recent = g->blockers;
+    if (r->candidate_area == AREA_PICTURE && r->candidate_count == CANDIDATES_MANY)
+        light_learn(g->job->grid, r->id, LIGHT_MANY, g->blockers.ids, g->blockers.count);
 }
 
 /* The boxes from `from` to `to` of the grid's arrays, which may shadow what lies in g->box. */
@@ -287,6 +316,14 @@ static inline unsigned faces_for(const struct group *g)
     return g->anywhere ? (1u << g->job->grid->face_count) - 1 : g->receiver->faces_met;
 }
 
+static inline void learn_candidates(const struct light_grid *grid, const struct receiver *r)
+{
+    if (r->candidate_count <= 0)
+        light_learn(grid, r->id, r->candidate_count == 0 ? LIGHT_NOTHING : LIGHT_MANY, NULL, 0);
+    else if (r->candidate_count <= LIGHT_OTHERS)
+        light_learn(grid, r->id, LIGHT_FEW, r->candidates, (unsigned)r->candidate_count);
+}
+
 /* Finds what may shadow the receiver within `quad` (NULL: anywhere). */
 static inline void find_candidates(const struct group *g, struct receiver *r, uint32_t area, const struct quad *quad)
 {
@@ -303,9 +340,8 @@ static inline void find_candidates(const struct group *g, struct receiver *r, ui
         all.box = &box;
         group_try_face(&all, f);
     }
-    if (area == AREA_PICTURE && r->candidate_count <= 0)
-        atomic_store_explicit(&g->job->grid->known[r->id], r->candidate_count == 0 ? LIGHT_NOTHING : LIGHT_MANY,
-                              memory_order_relaxed);
+    if (area == AREA_PICTURE)
+        learn_candidates(g->job->grid, r);
 }
 
 static inline bool is_small_everywhere(const struct tile_job *job, const struct receiver *r)
@@ -322,16 +358,13 @@ static inline bool candidates_ready(const struct group *g, struct receiver *r, u
 {
     if (g->anywhere)
         return false;
-    unsigned known = atomic_load_explicit(&g->job->grid->known[r->id], memory_order_relaxed);
-    if (known != LIGHT_UNKNOWN) {
-        r->candidate_count = known == LIGHT_NOTHING ? 0 : CANDIDATES_MANY;
-        return known == LIGHT_NOTHING;
-    }
+    if (r->candidate_area == AREA_PICTURE)
+        return r->candidate_count >= 0;
     uint32_t tile_area = tile * AREAS_PER_TILE, tx = g->x % TILE_SIDE, ty = g->y % TILE_SIDE;
     uint32_t block_area = tile_area + 1 + ty / BLOCK_SIDE * BLOCKS_PER_ROW + tx / BLOCK_SIDE;
     struct quad quad;
     receiver_boxes(r, g->job);
-    if (r->candidate_area == AREA_PICTURE || r->candidate_area == tile_area || r->candidate_area == block_area)
+    if (r->candidate_area == tile_area || r->candidate_area == block_area)
         return r->candidate_count >= 0;
     if (r->crowded_tile != tile) {
         if (is_small_everywhere(g->job, r)) {

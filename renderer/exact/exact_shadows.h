@@ -35,7 +35,7 @@ struct exact_figures {
     double grid_side, grid_entries;
 };
 
-/* Of the last picture. */
+/* Of the last picture. Tests and undecided samples depend a little on what threads learned from each other and from earlier pictures. */
 struct exact_figures exact_shadows_figures(const struct exact_shadows *e);
 size_t exact_shadows_bytes(const struct exact_shadows *e);
 

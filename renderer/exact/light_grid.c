@@ -23,11 +23,11 @@ struct light_ref {
     uint32_t cell;
 };
 
-enum { REF_BYTES = 5 * sizeof(float) + sizeof(uint32_t) };
+enum { REF_BYTES = 5 * sizeof(float) + sizeof(uint32_t), KNOWN_BYTES = 1 + LIGHT_OTHERS * sizeof(uint32_t) };
 
 size_t light_grid_least_bytes(const struct triangles *triangles)
 {
-    return ((size_t)triangles->count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref) + 1) + 4096;
+    return ((size_t)triangles->count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref) + KNOWN_BYTES) + 4096;
 }
 
 struct build {
@@ -334,7 +334,8 @@ static uint32_t wanted_side(const struct light_grid *grid)
 static size_t bytes_for(const struct light_grid *grid, uint32_t side)
 {
     size_t cells = (size_t)side * side * 4 / 3 * grid->face_count;
-    return ((size_t)grid->ref_count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref) + 1) + cells * 2 * sizeof(uint32_t);
+    return ((size_t)grid->ref_count + LIGHT_PADDING) * (REF_BYTES + sizeof(struct light_ref) + KNOWN_BYTES) +
+           cells * 2 * sizeof(uint32_t);
 }
 
 static void fit_faces(struct build *b, uint32_t side)
@@ -361,11 +362,12 @@ static bool allocate(struct build *b)
     uint32_t blocks = light_blocks(&grid->faces[0]);
     grid->blocks = calloc((size_t)blocks * blocks * grid->face_count, sizeof *grid->blocks);
     grid->known = calloc((size_t)b->triangles->count + 1, sizeof *grid->known);
+    grid->others = malloc(((size_t)b->triangles->count + 1) * sizeof *grid->others);
     grid->ids = calloc((size_t)grid->ref_count + LIGHT_PADDING, sizeof *grid->ids);
     grid->first = malloc(((size_t)grid->cell_count + 1) * sizeof *grid->first);
     b->cursor = malloc(((size_t)grid->cell_count + 1) * sizeof *b->cursor);
     return grid->u0 && grid->u1 && grid->v0 && grid->v1 && grid->near && grid->ids && grid->blocks && grid->known &&
-           grid->first && b->cursor;
+           grid->others && grid->first && b->cursor;
 }
 
 static bool list_all(struct build *b, size_t memory, struct job_pool *pool)
@@ -409,6 +411,7 @@ void light_grid_finish(struct light_grid *grid)
     free(grid->v1);
     free(grid->near);
     free(grid->ids);
+    free((void *)grid->others);
     free((void *)grid->known);
     free((void *)grid->blocks);
     free(grid->first);

@@ -17,7 +17,7 @@
 
 struct job_pool;
 
-enum { LIGHT_FACES_MAX = 6, LIGHT_LEVELS_MAX = 13, LIGHT_PADDING = 16, LIGHT_BLOCK_SHIFT = 2 };
+enum { LIGHT_FACES_MAX = 6, LIGHT_LEVELS_MAX = 13, LIGHT_PADDING = 16, LIGHT_OTHERS = 8, LIGHT_BLOCK_SHIFT = 2 };
 
 /* u, v: on the plane at distance 1 from a point or spot light; scene units for a directional one. near, far: along face.forward. */
 struct light_box {
@@ -45,13 +45,16 @@ struct light_grid {
     uint32_t ref_count;
     uint32_t *first; /* boxes of each cell, one more than cells */
     uint32_t cell_count;
-    _Atomic uint8_t *known;   /* enum light_known of each triangle: learned as pictures ask, true for all */
+    /* Learned as pictures ask, of each triangle, whoever looks at it: enum light_known, and what that says of other triangles. */
+    _Atomic uint32_t (*others)[LIGHT_OTHERS];
+    _Atomic uint8_t *known;
     _Atomic uint16_t *blocks; /* face by face, 4 x 4 cells of level 0 each: bit a level: boxes of it meet the block */
     size_t bytes;
 };
 
-/* What may shadow some point of a triangle. */
-enum light_known { LIGHT_UNKNOWN, LIGHT_NOTHING, LIGHT_MANY };
+/* What may shadow some point of a triangle: nothing; the others; many, of which the others together shadowed some pixel of it. SCENE_NONE:
+ * no more others. */
+enum light_known { LIGHT_UNKNOWN, LIGHT_NOTHING, LIGHT_FEW, LIGHT_MANY };
 
 enum face_part { FACE_NONE, FACE_SOME };
 

@@ -1,6 +1,8 @@
 /* A tile's code: triangles as receivers and as occluders, and where a pixel's part of a receiver lies in the light's grid. */
 #pragma once
 
+#include <stdatomic.h>
+
 #include "exact/hole_samples.h"
 #include "exact/simd.h"
 #include "exact/tile.h"
@@ -73,6 +75,33 @@ static inline const struct masked *masked_get(struct tile_scratch *s, const stru
     return m;
 }
 
+/* What is known of it already. */
+static inline void receiver_recall(struct receiver *r, const struct light_grid *grid)
+{
+    unsigned known = atomic_load_explicit(&grid->known[r->id], memory_order_acquire), count = 0;
+    uint32_t *to = known == LIGHT_FEW ? r->candidates : r->recent.ids;
+    r->recent.count = 0;
+    r->candidate_area = known == LIGHT_UNKNOWN ? AREA_NONE : AREA_PICTURE;
+    r->candidate_count = known == LIGHT_MANY ? CANDIDATES_MANY : 0;
+    if (known <= LIGHT_NOTHING)
+        return;
+    for (; count < LIGHT_OTHERS; count++) {
+        to[count] = atomic_load_explicit(&grid->others[r->id][count], memory_order_relaxed);
+        if (to[count] == SCENE_NONE)
+            break;
+    }
+    *(known == LIGHT_FEW ? (unsigned *)&r->candidate_count : &r->recent.count) = count;
+}
+
+/* All that say LIGHT_FEW of a triangle name the same others, and none says LIGHT_MANY: so a reader never mixes the two. */
+static inline void light_learn(const struct light_grid *grid, uint32_t id, enum light_known known, const uint32_t *others,
+                               unsigned count)
+{
+    for (unsigned i = 0; i < LIGHT_OTHERS; i++)
+        atomic_store_explicit(&grid->others[id][i], i < count ? others[i] : SCENE_NONE, memory_order_relaxed);
+    atomic_store_explicit(&grid->known[id], (uint8_t)known, memory_order_release);
+}
+
 static inline void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)
 {
     struct dvec3 c[3];
@@ -101,8 +130,9 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
     r->to_light.x *= side;
     r->to_light.y *= side;
     r->to_light.z *= side;
-    r->candidate_area = r->crowded_tile = AREA_NONE;
+    r->crowded_tile = AREA_NONE;
     r->boxed = false;
+    receiver_recall(r, job->grid);
 }
 
 /* Its boxes on the light's faces, which only those need that may be shadowed. */

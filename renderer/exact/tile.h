@@ -46,6 +46,13 @@ struct masked {
     lane4 unscale;  /* what brings its lines back to the forms' own measure */
 };
 
+/* Triangles that together shadowed all samples of a pixel. */
+enum { BLOCKERS_KEPT = 8 };
+struct blockers {
+    unsigned count;
+    uint32_t ids[BLOCKERS_KEPT];
+};
+
 /* A triangle that is seen: its plane's form, turned so that F is negative, scaled to about 1. */
 struct receiver {
     uint32_t id;
@@ -58,7 +65,8 @@ struct receiver {
     bool boxed;            /* the next two are known: receiver_boxes() */
     unsigned faces_met;    /* bit a face of the grid */
     struct light_box boxes[LIGHT_FACES_MAX];
-    int candidate_count; /* what may shadow its points in `candidate_area`, or CANDIDATES_MANY: ask the grid */
+    struct blockers recent; /* of its last pixel that was shadowed wholly */
+    int candidate_count;    /* what may shadow its points in `candidate_area`, or CANDIDATES_MANY: ask the grid */
     uint32_t candidate_area;
     uint32_t crowded_tile; /* the last tile with too many candidates */
     uint32_t candidates[CANDIDATES_MAX];

@@ -12,26 +12,37 @@ static inline uint32_t shade_group(struct tile_scratch *s, const struct tile_job
     struct quad quad;
     if (r->certain && !r->faces)
         return 0;
-    bool listed = candidates_ready(&g, r, tile), reaches_all = light_reaches_all(job->light);
+    bool reaches_all = light_reaches_all(job->light);
+    if (reaches_all && r->certain && r->recent.count) {
+        group_try_recent(&g);
+        if (!g.open) {
+            s->counts.receivers += (unsigned)__builtin_popcount(mask);
+            return mask;
+        }
+    }
+    bool listed = candidates_ready(&g, r, tile);
     bool placed = r->certain && !(listed && reaches_all) && quad_make(&quad, job, r, x, y, 1);
     int reached = reaches_all ? 1 : placed ? quad_within_reach(job->light, &quad) : -1;
+    uint32_t receivers = mask;
     if (!r->certain || reached < 0) {
         for (uint32_t bits = mask; bits; bits &= bits - 1) {
             unsigned i = (unsigned)__builtin_ctz(bits);
             struct sample_ray ray = group_ray(&g, i);
             if (!slow_receives(&s->slow, &ray, id))
-                g.open &= ~(1u << i);
+                receivers &= ~(1u << i);
         }
+        g.open &= receivers;
     } else if (reached == 0) {
         return 0;
     }
-    uint32_t receivers = g.open;
     s->counts.receivers += (unsigned)__builtin_popcount(receivers);
     if (listed)
         for (int i = 0; i < r->candidate_count && g.open; i++)
             group_try(&g, r->candidates[i], true);
     else if (g.open)
         group_cast(&g, r, placed ? &quad : NULL);
+    if (!g.open && receivers)
+        group_was_shadowed(&g, r);
     *lit |= g.open;
     return receivers;
 }
@@ -115,7 +126,14 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     g.certain = !g.anywhere;
     if (!g.anywhere && !r->faces)
         return false;
-    bool listed = candidates_ready(&g, r, tile), reaches_all = !g.anywhere && light_reaches_all(job->light);
+    bool reaches_all = !g.anywhere && light_reaches_all(job->light);
+    if (reaches_all && r->recent.count) {
+        group_try_recent(&g);
+        s->counts.receivers += !g.open;
+        if (!g.open)
+            return false;
+    }
+    bool listed = candidates_ready(&g, r, tile);
     bool placed = r->certain && !(listed && reaches_all) && quad_make(&quad, job, r, x + 0.5, y + 0.5, 0);
     int reached = reaches_all ? 1 : placed ? (r->faces ? quad_within_reach(job->light, &quad) : 0) : -1;
     g.certain |= placed;
@@ -131,6 +149,8 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     else
         for (int i = 0; i < r->candidate_count && g.open; i++)
             group_try(&g, r->candidates[i], true);
+    if (!g.open)
+        group_was_shadowed(&g, r);
     return g.open;
 }
 

@@ -329,7 +329,7 @@ static void memory_changes_nothing(void **state)
     uint32_t *kept = malloc(PIXELS * sizeof *kept);
     double sides[2];
     for (int tight = 0; tight < 2; tight++) {
-        struct exact_shadows *e = exact_shadows_create(scene, tight ? (size_t)COUNT * 140 : 0, &err);
+        struct exact_shadows *e = exact_shadows_create(scene, tight ? (size_t)COUNT * 172 : 0, &err);
         assert_true(exact_shadows_set_light(e, &light, pool, &err));
         assert_non_null(exact_shadows_samples32(e, &view, pool, &receivers, &lit, &err));
         sides[tight] = exact_shadows_figures(e).grid_side;
