@@ -227,7 +227,7 @@ static inline void group_was_shadowed(const struct group *g, struct receiver *r)
 {
     r->recent = g->blockers;
     if (r->candidate_area == AREA_PICTURE && r->candidate_count == CANDIDATES_MANY)
-        light_learn(g->job->grid, r->id, LIGHT_MANY, g->blockers.ids, g->blockers.count);
+        light_learn(g->job->grid, r, LIGHT_MANY, g->blockers.ids, g->blockers.count);
 }
 
 /* The boxes from `from` to `to` of the grid's arrays, which may shadow what lies in g->box. */
@@ -319,9 +319,9 @@ static inline unsigned faces_for(const struct group *g)
 static inline void learn_candidates(const struct light_grid *grid, const struct receiver *r)
 {
     if (r->candidate_count <= 0)
-        light_learn(grid, r->id, r->candidate_count == 0 ? LIGHT_NOTHING : LIGHT_MANY, NULL, 0);
+        light_learn(grid, r, r->candidate_count == 0 ? LIGHT_NOTHING : LIGHT_MANY, NULL, 0);
     else if (r->candidate_count <= LIGHT_OTHERS)
-        light_learn(grid, r->id, LIGHT_FEW, r->candidates, (unsigned)r->candidate_count);
+        light_learn(grid, r, LIGHT_FEW, r->candidates, (unsigned)r->candidate_count);
 }
 
 /* Finds what may shadow the receiver within `quad` (NULL: anywhere). */
@@ -363,7 +363,7 @@ static inline bool candidates_ready(const struct group *g, struct receiver *r, u
     uint32_t tile_area = tile * AREAS_PER_TILE, tx = g->x % TILE_SIDE, ty = g->y % TILE_SIDE;
     uint32_t block_area = tile_area + 1 + ty / BLOCK_SIDE * BLOCKS_PER_ROW + tx / BLOCK_SIDE;
     struct quad quad;
-    receiver_boxes(r, g->job);
+    receiver_boxes(r, g->scratch, g->job);
     if (r->candidate_area == tile_area || r->candidate_area == block_area)
         return r->candidate_count >= 0;
     if (r->crowded_tile != tile) {
@@ -387,7 +387,7 @@ static inline bool candidates_ready(const struct group *g, struct receiver *r, u
 /* Takes the shadowed samples out of g->open. `quad`: where they lie; NULL: not known. */
 static inline void group_cast(struct group *g, struct receiver *r, const struct quad *quad)
 {
-    receiver_boxes(r, g->job);
+    receiver_boxes(r, g->scratch, g->job);
     for (unsigned faces = faces_for(g); faces && g->open; faces &= faces - 1) {
         unsigned f = (unsigned)__builtin_ctz(faces);
         struct light_box box;

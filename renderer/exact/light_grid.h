@@ -45,7 +45,8 @@ struct light_grid {
     uint32_t ref_count;
     uint32_t *first; /* boxes of each cell, one more than cells */
     uint32_t cell_count;
-    /* Learned as pictures ask, of each triangle, whoever looks at it: enum light_known, and what that says of other triangles. */
+    /* Learned as pictures ask, of each triangle, whoever looks at it: enum light_known, above it the light's side (0: not known, else 2 + the
+     * sign); and what the former says of other triangles. */
     _Atomic uint32_t (*others)[LIGHT_OTHERS];
     _Atomic uint8_t *known;
     _Atomic uint16_t *blocks; /* face by face, 4 x 4 cells of level 0 each: bit a level: boxes of it meet the block */
@@ -54,7 +55,7 @@ struct light_grid {
 
 /* What may shadow some point of a triangle: nothing; the others; many, of which the others together shadowed some pixel of it. SCENE_NONE:
  * no more others. */
-enum light_known { LIGHT_UNKNOWN, LIGHT_NOTHING, LIGHT_FEW, LIGHT_MANY };
+enum light_known { LIGHT_UNKNOWN, LIGHT_NOTHING, LIGHT_FEW, LIGHT_MANY, LIGHT_KNOWN_BITS = 2 };
 
 enum face_part { FACE_NONE, FACE_SOME };
 

@@ -79,6 +79,8 @@ static inline const struct masked *masked_get(struct tile_scratch *s, const stru
 static inline void receiver_recall(struct receiver *r, const struct light_grid *grid)
 {
     unsigned known = atomic_load_explicit(&grid->known[r->id], memory_order_acquire), count = 0;
+    r->side = (int)(known >> LIGHT_KNOWN_BITS) - 2;
+    known &= (1 << LIGHT_KNOWN_BITS) - 1;
     uint32_t *to = known == LIGHT_FEW ? r->candidates : r->recent.ids;
     r->recent.count = 0;
     r->candidate_area = known == LIGHT_UNKNOWN ? AREA_NONE : AREA_PICTURE;
@@ -94,12 +96,29 @@ static inline void receiver_recall(struct receiver *r, const struct light_grid *
 }
 
 /* All that say LIGHT_FEW of a triangle name the same others, and none says LIGHT_MANY: so a reader never mixes the two. */
-static inline void light_learn(const struct light_grid *grid, uint32_t id, enum light_known known, const uint32_t *others,
-                               unsigned count)
+static inline void light_learn(const struct light_grid *grid, const struct receiver *r, enum light_known known,
+                               const uint32_t *others, unsigned count)
 {
     for (unsigned i = 0; i < LIGHT_OTHERS; i++)
-        atomic_store_explicit(&grid->others[id][i], i < count ? others[i] : SCENE_NONE, memory_order_relaxed);
-    atomic_store_explicit(&grid->known[id], (uint8_t)known, memory_order_release);
+        atomic_store_explicit(&grid->others[r->id][i], i < count ? others[i] : SCENE_NONE, memory_order_relaxed);
+    atomic_store_explicit(&grid->known[r->id], (uint8_t)(known | (unsigned)(r->side + 2) << LIGHT_KNOWN_BITS),
+                          memory_order_release);
+}
+
+/* Its edges and plane seen from the light, which only those need that may be shadowed; and the light's side. */
+static inline void receiver_see_light(struct receiver *r, struct tile_scratch *s, const struct tile_job *job)
+{
+    struct dvec3 c[3];
+    triangle_corners(job->triangles, r->id, c);
+    forms_make(&r->to_light, &job->to_light, &c[0], &c[1], &c[2]);
+    if (r->side < -1) {
+        r->side = light_side(s, job, &r->to_light, r->id);
+        atomic_fetch_or_explicit(&job->grid->known[r->id], (uint8_t)((r->side + 2) << LIGHT_KNOWN_BITS), memory_order_relaxed);
+    }
+    r->to_light.x *= r->side;
+    r->to_light.y *= r->side;
+    r->to_light.z *= r->side;
+    r->sees_light = true;
 }
 
 static inline void receiver_make(struct receiver *r, struct tile_scratch *s, const struct tile_job *job, uint32_t id)
@@ -124,23 +143,22 @@ static inline void receiver_make(struct receiver *r, struct tile_scratch *s, con
     r->certain = fabs(r->fixed) > LINE_ROUNDING * r->fixed_size + LINE_UNDERFLOW;
     /* N . d where the camera sees it: against F in perspective, F itself else. */
     int slope = (lines.fixed[3] > 0) == job->view->orthographic ? 1 : -1;
-    forms_make(&r->to_light, &job->to_light, &c[0], &c[1], &c[2]);
-    int side = light_side(s, job, &r->to_light, id);
-    r->faces = slope * side < 0;
-    r->to_light.x *= side;
-    r->to_light.y *= side;
-    r->to_light.z *= side;
     r->crowded_tile = AREA_NONE;
-    r->boxed = false;
+    r->boxed = r->sees_light = false;
     receiver_recall(r, job->grid);
+    if (r->side < -1)
+        receiver_see_light(r, s, job);
+    r->faces = slope * r->side < 0;
 }
 
 /* Its boxes on the light's faces, which only those need that may be shadowed. */
-static inline void receiver_boxes(struct receiver *r, const struct tile_job *job)
+static inline void receiver_boxes(struct receiver *r, struct tile_scratch *s, const struct tile_job *job)
 {
     struct dvec3 c[3];
     if (r->boxed)
         return;
+    if (!r->sees_light)
+        receiver_see_light(r, s, job);
     r->boxed = true;
     r->faces_met = 0;
     triangle_corners(job->triangles, r->id, c);
@@ -202,14 +220,15 @@ static inline struct receiver *receiver_get(struct tile_scratch *s, const struct
     return r;
 }
 
-/* True when the ray at (x, y) certainly crosses the inside of the receiver, before the eye, and the receiver is certain. */
-static inline bool is_inside(const struct tile_job *job, const struct receiver *r, double x, double y)
+/* 1 or -1 when the ray at (x, y) certainly crosses the inside of the receiver, one way or the other, before the eye, and the receiver is
+ * certain; else 0. */
+static inline int inside_of(const struct tile_job *job, const struct receiver *r, double x, double y)
 {
     lane4 value = r->edge + x * r->edge_x + y * r->edge_y, under = -value;
     double v = r->v + x * r->vx + y * r->vy;
     if (!r->certain || (!job->view->orthographic && !(v > LINE_ROUNDING * r->v_size + LINE_UNDERFLOW)))
-        return false;
-    return (lanes_above(&value, &r->edge_error) & 7) == 7 || (lanes_above(&under, &r->edge_error) & 7) == 7;
+        return 0;
+    return (lanes_above(&value, &r->edge_error) & 7) == 7 ? 1 : (lanes_above(&under, &r->edge_error) & 7) == 7 ? -1 : 0;
 }
 
 /* Points of a receiver's plane at four picture positions, and how far off they may be. */

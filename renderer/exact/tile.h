@@ -62,6 +62,8 @@ struct receiver {
     lane4 edge, edge_x, edge_y,
         edge_error;        /* its edges in the picture: positive inside, or negative, all three; lane 3 nothing */
     struct forms to_light; /* seen from the light: positive inside its edges, and on the light's side of its plane */
+    int side;              /* the light's: -1, 0, 1; -2: not known yet */
+    bool sees_light;       /* to_light is known */
     bool boxed;            /* the next two are known: receiver_boxes() */
     unsigned faces_met;    /* bit a face of the grid */
     struct light_box boxes[LIGHT_FACES_MAX];

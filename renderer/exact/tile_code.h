@@ -122,7 +122,7 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     struct receiver *r = receiver_get(s, job, id);
     struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = 1, .center = true};
     struct quad quad;
-    g.anywhere = !is_inside(job, r, x + 0.5, y + 0.5);
+    g.anywhere = !inside_of(job, r, x + 0.5, y + 0.5);
     g.certain = !g.anywhere;
     if (!g.anywhere && !r->faces)
         return false;
@@ -154,6 +154,40 @@ static inline bool point_is_lit(struct tile_scratch *s, const struct tile_job *j
     return g.open;
 }
 
+static inline bool is_one_receiver(const struct tile_job *job, const uint32_t *ids)
+{
+    bool same = true;
+    for (uint32_t y = 0; y < BLOCK_SIDE; y++)
+        for (uint32_t x = 0; x < BLOCK_SIDE; x++)
+            same &= ids[y * job->view->width + x] == ids[0];
+    return same;
+}
+
+/* 1 lit, 0 not: all pixel centres of the block at (x, y); -1: ask one by one. */
+static inline int block_is_lit(struct tile_scratch *s, const struct tile_job *job, uint32_t x, uint32_t y, uint32_t tile)
+{
+    const uint32_t *ids = job->ids + (size_t)y * job->view->width + x;
+    if (!is_one_receiver(job, ids))
+        return -1;
+    if (*ids == SCENE_NONE || job->triangles->flags[*ids] & TRIANGLE_IGNORED)
+        return 0;
+    struct receiver *r = receiver_get(s, job, *ids);
+    struct group g = {.scratch = s, .job = job, .receiver = r, .x = x, .y = y, .open = 1, .center = true};
+    const double ends[2] = {0.5, BLOCK_SIDE - 0.5};
+    int inside = inside_of(job, r, x + ends[0], y + ends[0]);
+    /* Half-planes are convex. */
+    for (int i = 1; i < 4 && inside; i++)
+        inside = inside_of(job, r, x + ends[i % 2], y + ends[i / 2]) == inside ? inside : 0;
+    if (!inside || (r->faces && !light_reaches_all(job->light)))
+        return -1;
+    if (!r->faces)
+        return 0;
+    if (!candidates_ready(&g, r, tile) || r->candidate_count != 0)
+        return -1;
+    s->counts.receivers += BLOCK_SIDE * BLOCK_SIDE;
+    return 1;
+}
+
 static inline void tile_point(void *context, size_t index, unsigned worker)
 {
     const struct tile_job *job = context;
@@ -161,12 +195,17 @@ static inline void tile_point(void *context, size_t index, unsigned worker)
     const struct view *view = job->view;
     uint32_t columns = (view->width + TILE_SIDE - 1) / TILE_SIDE;
     uint32_t x0 = (uint32_t)(index % columns) * TILE_SIDE, y0 = (uint32_t)(index / columns) * TILE_SIDE;
+    int block = -1;
     for (uint32_t i = 0; i < TILE_PIXELS; i++) {
         struct tile_pixel p = pixel_in_order(i);
         uint32_t x = x0 + p.x, y = y0 + p.y;
+        if (i % (BLOCK_SIDE * BLOCK_SIDE) == 0)
+            block = x + BLOCK_SIDE <= view->width && y + BLOCK_SIDE <= view->height ? block_is_lit(s, job, x, y, (uint32_t)index)
+                                                                                    : -1;
         if (x >= view->width || y >= view->height)
             continue;
         size_t at = (size_t)y * view->width + x;
-        job->visibility[at] = point_is_lit(s, job, job->ids[at], x, y, (uint32_t)index) ? 1.0f : 0.0f;
+        bool lit = block < 0 ? point_is_lit(s, job, job->ids[at], x, y, (uint32_t)index) : block;
+        job->visibility[at] = lit ? 1.0f : 0.0f;
     }
 }
