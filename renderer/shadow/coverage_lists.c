@@ -12,10 +12,11 @@ const int8_t coverage_pool[COVERAGE_POOL][2] = {
     {2, 1}, {2, -1}, {-2, 1}, {-2, -1}, {1, 2},  {-1, 2}, {1, -2}, {-1, -2}, {2, 2},   {-2, 2}, {2, -2}, {-2, -2},
 };
 
-/* A triangle that a neighbour keeps, and its claim to a place. */
-struct candidate {
-    uint32_t id, link;
-    int corners; /* of the texel, that it holds; 0: touches the texel; 5: the texel's own */
+/* Triangles that the texel or a neighbour keeps and that touch it, each once, and their claims to a place. */
+struct candidates {
+    uint32_t id[32]; /* the texel's own first, which also fills the places not taken */
+    unsigned count;
+    uint32_t claim[5]; /* links to those that hold so many of the texel's corners; its own not among them */
 };
 
 /* How many of the texel's corners each triangle holds (eq. 3); those are the midpoints between centres (eq. 2). Eq. 3's u, v >= 0 and
@@ -81,74 +82,79 @@ INLINE void claims(const struct geometry_map *m, const uint32_t *ids, uint32_t x
             (*out)[lane] = wild_corners_held(m, part[lane], ids[lane], x, y);
 }
 
-static bool is_known(const struct candidate *candidates, unsigned count, uint32_t id)
+INLINE bool is_known(const struct candidates *c, uint32_t id)
 {
-    for (unsigned i = 0; i < count; i++)
-        if (candidates[i].id == id)
-            return true;
-    return false;
+    lanes_int known = {};
+    for (unsigned i = 0; i < c->count; i += CONSERVATIVE_LANES)
+        known |= *(const lanes_int_loose *)&c->id[i] == (int32_t)id;
+    return LANES_ANY(known);
 }
 
 /* What eight texels of the pool keep, from number `first` on. */
 INLINE void kept_around(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned first,
                         uint32_t ids[CONSERVATIVE_LANES])
 {
+    const int8_t(*step)[2] = coverage_pool + first;
     /* Most texels have their neighbours in their own tile. */
-    bool within = x % MAP_TILE - 2 < MAP_TILE - 4 && y % MAP_TILE - 2 < MAP_TILE - 4;
+    if (x % MAP_TILE - 2 < MAP_TILE - 4 && y % MAP_TILE - 2 < MAP_TILE - 4)
 #pragma GCC unroll 8
-    for (unsigned k = 0; k < CONSERVATIVE_LANES; k++) {
-        int32_t dx = coverage_pool[first + k][0], dy = coverage_pool[first + k][1];
-        ids[k] = within ? m->cells[(ptrdiff_t)at + dy * (ptrdiff_t)MAP_TILE + dx].triangle
-                        : geometry_map_triangle(m, (int32_t)x + dx, (int32_t)y + dy);
-    }
+        for (unsigned k = 0; k < CONSERVATIVE_LANES; k++)
+            ids[k] = m->cells[(ptrdiff_t)at + step[k][1] * (ptrdiff_t)MAP_TILE + step[k][0]].triangle;
+    else
+        for (unsigned k = 0; k < CONSERVATIVE_LANES; k++)
+            ids[k] = geometry_map_triangle(m, (int32_t)x + step[k][0], (int32_t)y + step[k][1]);
 }
 
-INLINE unsigned add_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned first, uint32_t *hint,
-                               struct candidate *out, unsigned count)
+INLINE void add_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned first, uint32_t *hint,
+                           struct candidates *c)
 {
     uint32_t ids[CONSERVATIVE_LANES];
     int32_t corners[CONSERVATIVE_LANES];
     kept_around(m, x, y, at, first, ids);
-    lanes_int kept = *(const lanes_int_loose *)ids, named = kept & (int32_t)MAP_ID, own = (lanes_int){} + (int32_t)out[0].id;
+    lanes_int kept = *(const lanes_int_loose *)ids, named = kept & (int32_t)MAP_ID, own = (lanes_int){} + (int32_t)c->id[0];
     lanes_int other = (kept != (int32_t)MAP_NONE) & (named != own), held;
     if (!LANES_ANY(other))
-        return count;
+        return;
     *(lanes_int_loose *)ids = (named & other) | (own & ~other);
     claims(m, ids, x, y, hint, &held);
     *(lanes_int_loose *)corners = held;
     other &= held >= 0;
     for (unsigned open = LANES_BITS(other); open; open &= open - 1) {
         unsigned k = (unsigned)__builtin_ctz(open);
-        if (!is_known(out, count, ids[k]))
-            out[count++] = (struct candidate){ids[k], 1u << (first + k), corners[k]};
+        if (is_known(c, ids[k]))
+            continue;
+        c->id[c->count++] = ids[k];
+        c->claim[corners[k]] |= 1u << (first + k);
     }
-    return count;
+}
+
+/* At most `most` of the bits, lowest first. */
+static uint32_t lowest_bits(uint32_t bits, unsigned most)
+{
+    uint32_t kept = 0;
+    for (; bits && most > 0; bits &= bits - 1, most--)
+        kept |= bits & -bits;
+    return kept;
 }
 
 /* The texel's own triangle comes first, whatever it holds; the second ring only where the first leaves places free. */
-INLINE unsigned find_candidates(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
-                                uint32_t *hint, struct candidate *out)
-{
-    unsigned count = 1;
-    out[0] = (struct candidate){m->cells[at].triangle & MAP_ID, 1, 5};
-    count = add_candidates(m, x, y, at, 1, hint, out, count);
-    for (unsigned first = COVERAGE_RING; first < pool && count < nodes; first += CONSERVATIVE_LANES)
-        count = add_candidates(m, x, y, at, first, hint, out, count);
-    return count;
-}
-
 INLINE uint32_t make_list_inline(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
                                  uint32_t *hint)
 {
-    struct candidate candidates[COVERAGE_POOL];
-    unsigned count = find_candidates(m, x, y, at, nodes, pool, hint, candidates);
-    uint32_t list = MADE;
-    for (int held = 5; held >= 0 && nodes > 0; held--)
-        for (unsigned i = 0; i < count && nodes > 0; i++)
-            if (candidates[i].corners == held) {
-                list |= candidates[i].link;
-                nodes--;
-            }
+    struct candidates c = {.count = 1};
+    *(lanes_int_loose *)&c.id[0] = (lanes_int){} + (int32_t)(m->cells[at].triangle & MAP_ID);
+    for (int i = CONSERVATIVE_LANES; i < 32; i += CONSERVATIVE_LANES)
+        *(lanes_int_loose *)&c.id[i] = *(lanes_int_loose *)&c.id[0];
+    add_candidates(m, x, y, at, 1, hint, &c);
+    for (unsigned first = COVERAGE_RING; first < pool && c.count < nodes; first += CONSERVATIVE_LANES)
+        add_candidates(m, x, y, at, first, hint, &c);
+    uint32_t list = MADE | 1;
+    unsigned places = nodes - 1;
+    for (int held = 4; held >= 0 && places > 0; held--) {
+        uint32_t chosen = lowest_bits(c.claim[held], places);
+        list |= chosen;
+        places -= (unsigned)__builtin_popcount(chosen);
+    }
     return list;
 }
 
