@@ -177,17 +177,32 @@ INLINE void put_on_map(const struct placed_map *m, const struct run *run, struct
     *on = (w > 0) & (x >= 0) & (y >= 0) & (x < side) & (y < side);
 }
 
+/* Those of `open` that the nearest depth of their texel does not tell to be lit. What deciding reads first is asked for while the others are
+ * looked up. */
+static unsigned find_doubtful(const struct geometry_map *m, const struct placed_run *placed, unsigned open,
+                              size_t at[CONSERVATIVE_LANES])
+{
+    unsigned doubtful = 0;
+    for (; open; open &= open - 1) {
+        unsigned i = (unsigned)__builtin_ctz(open);
+        at[i] = geometry_map_at(m, (uint32_t)placed->x[i], (uint32_t)placed->y[i]);
+        if (at[i] == SIZE_MAX)
+            continue;
+        doubtful |= (unsigned)(placed->n[i] < m->cells[at[i]].nearest) << i;
+    }
+    for (unsigned left = doubtful; left; left &= left - 1)
+        __builtin_prefetch(&m->notes[at[__builtin_ctz(left)]]);
+    return doubtful;
+}
+
 /* The first map that holds a point answers for it; points on none are lit. */
 static void resolve_on_map(const struct resolve_job *job, const struct geometry_map *m, const struct placed_run *placed,
                            size_t first, unsigned open, uint32_t *hint)
 {
-    for (; open; open &= open - 1) {
-        unsigned i = (unsigned)__builtin_ctz(open);
-        struct map_point p = {.x = placed->x[i], .y = placed->y[i], .n = placed->n[i]};
-        p.at = geometry_map_at(m, (uint32_t)p.x, (uint32_t)p.y);
-        if (p.at == SIZE_MAX || !(p.n < m->cells[p.at].nearest))
-            continue;
-        p.id = job->ids[first + i];
+    size_t at[CONSERVATIVE_LANES];
+    for (unsigned left = find_doubtful(m, placed, open, at); left; left &= left - 1) {
+        unsigned i = (unsigned)__builtin_ctz(left);
+        struct map_point p = {placed->x[i], placed->y[i], placed->n[i], job->ids[first + i], at[i]};
         if (!job->decide(job->state, m, &p, job->in->params, hint))
             job->visibility[first + i] = 0;
     }
