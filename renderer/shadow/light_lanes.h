@@ -2,6 +2,10 @@
  * same order, so the same bits. */
 #pragma once
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "shadow/conservative.h"
 #include "shadow/light_mesh.h"
 
@@ -9,16 +13,24 @@ typedef float lanes_quarter __attribute__((vector_size(16)));
 typedef int32_t lanes_int_loose __attribute__((vector_size(32), aligned(4), may_alias));
 typedef int64_t lanes_long __attribute__((vector_size(32)));
 
-/* Macros, since vectors that functions return depend on the instruction set. */
+/* Macros, since vectors that functions return depend on the instruction set. A mask's lanes are all ones or all zeros; LANES_MAX and LANES_MIN give b
+ * where either is not a number. Files that are compiled for AVX2 say the same in its own words, which the compiler does not find by itself. */
+#ifdef __AVX2__
+#define LANES_IF(mask, a, b) ((lanes_float)_mm256_blendv_ps((__m256)(b), (__m256)(a), (__m256)(mask)))
+#define LANES_MAX(a, b)      ((lanes_float)_mm256_max_ps((__m256)(a), (__m256)(b)))
+#define LANES_MIN(a, b)      ((lanes_float)_mm256_min_ps((__m256)(a), (__m256)(b)))
+#define LANES_BITS(mask)     ((unsigned)_mm256_movemask_ps((__m256)(mask)))
+#define LANES_ANY(mask)      (LANES_BITS(mask) != 0)
+#else
 #define LANES_IF(mask, a, b) ((lanes_float)(((mask) & (lanes_int)(a)) | (~(mask) & (lanes_int)(b))))
 #define LANES_MAX(a, b)      LANES_IF((a) > (b), a, b)
 #define LANES_MIN(a, b)      LANES_IF((a) < (b), a, b)
-#define LANES_ALL(value)     ((lanes_float){} + (value))
-#define LANES_ABS(v)         ((lanes_float)((lanes_int)(v) & ((lanes_int){} + INT32_MAX)))
-#define LANES_FOLD(m)        (((lanes_long)(m))[0] | ((lanes_long)(m))[1] | ((lanes_long)(m))[2] | ((lanes_long)(m))[3])
-/* Whether any bit is set; and a bit a lane. */
-#define LANES_ANY(mask)      (LANES_FOLD(mask) != 0)
 #define LANES_BITS(mask)     light_lanes_halves(LANES_FOLD(((mask)&light_lanes_powers)))
+#define LANES_ANY(mask)      (LANES_FOLD(mask) != 0)
+#endif
+#define LANES_ALL(value) ((lanes_float){} + (value))
+#define LANES_ABS(v)     ((lanes_float)((lanes_int)(v) & ((lanes_int){} + INT32_MAX)))
+#define LANES_FOLD(m)    (((lanes_long)(m))[0] | ((lanes_long)(m))[1] | ((lanes_long)(m))[2] | ((lanes_long)(m))[3])
 /* The square root of each, correctly rounded whatever the instruction set. */
 #define LANES_ROOT(v)                                         \
     do {                                                      \

@@ -1,0 +1,7 @@
+#include "shadow/map_tile_code.h"
+
+#ifdef __AVX2__
+map_tile_kernel *const map_tile_avx2 = rasterize;
+#else
+map_tile_kernel *const map_tile_avx2 = NULL;
+#endif
