@@ -58,22 +58,26 @@ static bool bind_light(struct renderer *r, const struct shadow_input *in, size_t
     return true;
 }
 
-static bool traces_maps(const struct render_scene *s, const struct render_settings *settings)
-{
-    if (!(settings->system->flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT)))
-        return false;
-    int size = shadow_param_index(settings->system, "size");
-    double side = size >= 0 ? settings->params.value[size] : SHADOW_FIT_SIDE;
-    return settings->map_pass == CAMERA_PASS_AUTO ? producer_traces_map(&s->draw, (size_t)(side * side))
-                                                  : settings->map_pass == CAMERA_PASS_TRACED;
-}
-
 /* Whoever gives a folder of shaders wants to see them at work. */
 static bool works_on_cpu(const struct render_scene *s, const struct render_settings *settings)
 {
     return settings->resolve_pass == RESOLVE_PASS_AUTO
                ? producer_resolves_on_cpu(&s->draw) && !gl_programs_are_files(s->renderer->programs)
                : settings->resolve_pass == RESOLVE_PASS_CPU;
+}
+
+static bool traces_maps(const struct render_scene *s, const struct render_settings *settings)
+{
+    unsigned flags = settings->system->flags;
+    if (!(flags & (SHADOW_USES_MAPS | SHADOW_USES_FIT)))
+        return false;
+    if (settings->map_pass != CAMERA_PASS_AUTO)
+        return settings->map_pass == CAMERA_PASS_TRACED;
+    int size = shadow_param_index(settings->system, "size");
+    double side = size >= 0 ? settings->params.value[size] : SHADOW_FIT_SIDE;
+    size_t texels = (size_t)(side * side);
+    return flags & SHADOW_USES_MAPS && works_on_cpu(s, settings) ? producer_traces_map_on_cpu(&s->draw, texels)
+                                                                    : producer_traces_map(&s->draw, texels);
 }
 
 static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings,

@@ -61,12 +61,13 @@ struct depth_job {
     float umbra; /* what is left of the light where all is dark */
 };
 
-/* For job_pool_for(): job `index` of depth_job_count(). */
+/* For job_pool_for(). */
 typedef void depth_rows(void *job, size_t index, unsigned worker);
 struct depth_kernel {
-    depth_rows *filter; /* of struct depth_job */
+    depth_rows *filter; /* of struct depth_job, depth_job_count() of them */
     depth_rows *soft_term, *soft_blur_x,
-        *soft_blur_y; /* of struct soft_job (soft_pass.h), one after the other; the first: all rows */
+        *soft_blur_y;      /* of struct soft_job (soft_pass.h), one after the other; the first: all rows */
+    depth_rows *rasterize; /* of struct raster_job (map_raster.h): a band */
 };
 extern const struct depth_kernel depth_plain, depth_avx2; /* the latter empty where the compiler has none */
 

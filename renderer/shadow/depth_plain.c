@@ -1,4 +1,5 @@
 #include "shadow/depth_filters.h"
+#include "shadow/map_raster_lanes.h"
 #include "shadow/soft_lanes.h"
 
-const struct depth_kernel depth_plain = {filter_rows, soft_term_rows, soft_blur_x_rows, soft_blur_y_rows};
+const struct depth_kernel depth_plain = {filter_rows, soft_term_rows, soft_blur_x_rows, soft_blur_y_rows, raster_band};

@@ -6,11 +6,13 @@
 
 #include "base/error.h"
 #include "base/job_pool.h"
+#include "base/lanes.h"
 #include "blocks.h"
 #include "draw/draw_scene.h"
+#include "draw/producer.h"
 #include "draw/put_vec4.h"
 #include "gl/context.h"
-#include "base/lanes.h"
+#include "shadow/depth_pass.h"
 #include "trace/tracer.h"
 
 static bool rasterize_map(struct light_maps *m, const struct shadow_input *in, unsigned map, unsigned layer, struct error *err)
@@ -125,23 +127,41 @@ static bool prepare_on_gpu(struct light_maps *m, const struct shadow_input *in, 
     return true;
 }
 
+/* What the CPU's rasterizer leaves is GL's, or the tracer's where that is faster. */
+static bool rasterize_to(struct light_maps *m, const struct shadow_input *in, unsigned map, float *texels, struct error *err)
+{
+    bool done = false;
+    if (in->resolve_on_cpu && !map_raster_draw(&m->raster, in->scene, &in->fit->maps[map], in->fit->casters,
+                                               in->fit->caster_count, depth_kernel_choose(), in->pool, texels, &done, err))
+        return false;
+    if (done)
+        return true;
+    if (in->resolve_on_cpu && producer_traces_map(in->draw, texels_of(m))) {
+        const struct tracer *tracer = in->tracer(in->owner, err);
+        if (tracer)
+            trace_map(in, tracer, map, texels);
+        return tracer;
+    }
+    if (!size_texture(m, in, 1, err) || !rasterize_map(m, in, map, 0, err))
+        return false;
+    glGetTextureImage(m->depth.id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, (GLsizei)(texels_of(m) * sizeof *texels), texels);
+    return true;
+}
+
 bool light_maps_prepare_on_cpu(struct light_maps *m, const struct shadow_input *in, struct error *err)
 {
     begin(m, in);
     if (m->fit.map_count == 0)
         return true;
     const struct tracer *tracer = in->trace_maps ? in->tracer(in->owner, err) : NULL;
-    if ((in->trace_maps && !tracer) || !reserve(m, m->fit.map_count, err) || (!tracer && !size_texture(m, in, 1, err)))
+    if ((in->trace_maps && !tracer) || !reserve(m, m->fit.map_count, err))
         return false;
     for (unsigned i = 0; i < m->fit.map_count; i++) {
         float *texels = m->texels + i * texels_of(m);
-        if (tracer) {
+        if (tracer)
             trace_map(in, tracer, i, texels);
-            continue;
-        }
-        if (!rasterize_map(m, in, i, 0, err))
+        else if (!rasterize_to(m, in, i, texels, err))
             return false;
-        glGetTextureImage(m->depth.id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, (GLsizei)(texels_of(m) * sizeof *texels), texels);
     }
     return gl_check(in->gl, err);
 }
@@ -186,8 +206,8 @@ bool light_maps_bind(struct light_maps *m, const struct shadow_input *in, struct
 size_t light_maps_bytes(const void *maps)
 {
     const struct light_maps *m = maps;
-    return m->depth.bytes + m->texel_room * sizeof *m->texels + m->draw.rows.size + m->draw.commands.size + m->draw.block.size +
-           m->block.size;
+    return m->depth.bytes + m->texel_room * sizeof *m->texels + map_raster_bytes(&m->raster) + m->draw.rows.size +
+           m->draw.commands.size + m->draw.block.size + m->block.size;
 }
 
 void light_maps_finish(void *maps)
@@ -198,5 +218,6 @@ void light_maps_finish(void *maps)
     draw_view_finish(&m->draw);
     gl_buffer_finish(&m->block);
     drop_texels(m);
+    map_raster_finish(&m->raster);
     memset(m, 0, sizeof *m);
 }

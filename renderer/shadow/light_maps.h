@@ -7,6 +7,7 @@
 #include "draw/draw_view.h"
 #include "gl/buffer.h"
 #include "gl/texture.h"
+#include "shadow/map_raster.h"
 #include "shadow/shadow.h"
 
 /* Floats that may be read past the last texel. */
@@ -14,9 +15,10 @@
 
 struct light_maps {
     struct gl_texture
-        depth; /* D32F array, a layer a map; encoding: shaders/maps.glsl. On the CPU: one layer, if rasterized; else nothing */
+        depth; /* D32F array, a layer a map; encoding: shaders/maps.glsl. On the CPU: one layer, if GL rasterized; else nothing */
     float *texels; /* on the CPU: all maps, row 0 at the top, else NULL; owned */
     size_t texel_room;
+    struct map_raster raster; /* on the CPU */
     struct gl_target target;
     struct draw_view draw;
     struct gl_buffer block; /* maps_block, relative to the camera of the last bind */
