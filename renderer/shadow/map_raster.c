@@ -1,5 +1,6 @@
 #include "shadow/map_raster.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,24 +32,44 @@ struct bin_job {
 static inline float least_of(float a, float b, float c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
 static inline float most_of(float a, float b, float c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
 
-/* The bands that hold a texel centre within the triangle's height; none where no centre lies within its box. Corners lie within a map's side
- * of the map. */
-static void find_bands(const struct map_raster *r, const struct light_triangle *t, uint16_t range[2])
+/* Of no area but for the rounding of its corners. Such triangles cast nothing. */
+static bool is_degenerate(const struct map_raster *r, const struct light_part *part, uint32_t id, const struct light_triangle *t,
+                          float extent)
+{
+    const struct light_vertex *const *c = t->corner;
+    float area = (c[1]->x - c[0]->x) * (c[2]->y - c[0]->y) - (c[2]->x - c[0]->x) * (c[1]->y - c[0]->y);
+    return fabsf(area) <= extent * (float)r->mesh.view.width * 0x1p-20f && light_part_degenerate(r->mesh.scene, part, id);
+}
+
+/* The bands that hold a texel centre within the triangle's height; left alone where no centre lies within its
+ * box. Corners lie within a map's side of the map. */
+static void find_bands(const struct map_raster *r, const struct light_part *part, uint32_t id, const struct light_triangle *t,
+                       uint16_t range[2])
 {
     const struct light_vertex *const *c = t->corner;
     int32_t side = (int32_t)r->mesh.view.width;
     float left = least_of(c[0]->x, c[1]->x, c[2]->x), right = most_of(c[0]->x, c[1]->x, c[2]->x);
     float top = least_of(c[0]->y, c[1]->y, c[2]->y), bottom = most_of(c[0]->y, c[1]->y, c[2]->y);
-    range[0] = range[1] = 0;
     if (right < 0.5f || bottom < 0.5f || left > (float)side - 0.5f || top > (float)side - 0.5f)
         return;
     int32_t x0 = (int32_t)(left + 0.5f), x1 = (int32_t)(right - 0.5f), y0 = (int32_t)(top + 0.5f), y1 = (int32_t)(bottom - 0.5f);
     y0 = y0 > 0 ? y0 : 0;
     y1 = y1 < side ? y1 : side - 1;
-    if (x0 > x1 || y0 > y1)
+    if (x0 > x1 || y0 > y1 || is_degenerate(r, part, id, t, right - left + bottom - top))
         return;
     range[0] = (uint16_t)(y0 / RASTER_ROWS);
     range[1] = (uint16_t)(y1 / RASTER_ROWS + 1);
+}
+
+/* Of a wild triangle. */
+static bool reaches_map(const struct map_raster *r, const struct light_part *part, uint32_t id)
+{
+    struct dvec3 c[3];
+    if (light_part_degenerate(r->mesh.scene, part, id))
+        return false;
+    for (unsigned k = 0; k < 3; k++)
+        c[k] = light_part_corner(&r->mesh, part, id, k);
+    return !light_corners_miss(&r->mesh, c, 0, 0, r->mesh.view.width, r->mesh.view.height);
 }
 
 /* The part of triangle number `t`. */
@@ -77,12 +98,13 @@ static void bin_chunk(void *context, size_t chunk, unsigned worker)
             const uint32_t *index = part->indices + 3 * (t - r->first[p]);
             uint16_t *range = r->ranges + 2 * t;
             if (!job->write) {
-                struct light_triangle corners = light_part_triangle(part, part->first_triangle + (uint32_t)(t - r->first[p]));
-                if (light_triangle_wild(&corners)) {
-                    job->wild[chunk] = true;
-                    return;
-                }
-                find_bands(r, &corners, range);
+                uint32_t id = part->first_triangle + (uint32_t)(t - r->first[p]);
+                struct light_triangle corners = light_part_triangle(part, id);
+                range[0] = range[1] = 0;
+                if (light_triangle_wild(&corners))
+                    job->wild[chunk] |= reaches_map(r, part, id);
+                else
+                    find_bands(r, part, id, &corners, range);
                 for (unsigned b = range[0]; b < range[1]; b++)
                     counts[b]++;
                 continue;

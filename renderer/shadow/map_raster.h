@@ -31,7 +31,8 @@ struct raster_job {
 };
 
 /* Fills texels (side x side of `view`) from `casters`, whichever way their triangles turn; *done: false where it cannot, for holes or for
- * triangles that reach behind the light or far off the map: nothing was written. May be called again. ERROR_TRY_AGAIN when memory is out. */
+ * triangles that reach from behind the light or from far off into the map: nothing was written. May be called again. ERROR_TRY_AGAIN when
+ * memory is out. */
 bool map_raster_draw(struct map_raster *r, const struct scene *scene, const struct view *view, const uint32_t *casters,
                      size_t caster_count, const struct depth_kernel *kernel, struct job_pool *pool, float *texels, bool *done,
                      struct error *err);
