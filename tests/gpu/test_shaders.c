@@ -220,6 +220,7 @@ static struct shot picture_with_cache(const char *path)
     struct studio studio;
     assert_true(studio_open(&studio, NULL, path));
     struct set set = set_load(&studio, "builtin:box");
+    set.settings.resolve_pass = RESOLVE_PASS_GPU;
     struct shot shot = shot_take(&studio, &set);
     set_strike(&set);
     studio_close(&studio);
