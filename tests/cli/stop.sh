@@ -8,10 +8,11 @@ run list devices
 
 # stop WHAT BODY: with a request under way, or none.
 stop() {
+    rm -f "$work/out" # the ready line of the one before
     "$GNOMON" serve --listen 127.0.0.1:0 >"$work/out" 2>"$work/err" &
     server=$!
     tries=0
-    until grep -q '^gnomon: ready ' "$work/out"; do
+    until grep -qs '^gnomon: ready ' "$work/out"; do
         tries=$((tries + 1))
         [ "$tries" -lt 300 ] || { complain "no ready line: $1"; kill -9 "$server"; return 0; }
         sleep 0.1
