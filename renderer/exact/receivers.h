@@ -99,7 +99,7 @@ static inline void receiver_recall(struct receiver *r, const struct light_grid *
 static inline void light_learn(const struct light_grid *grid, const struct receiver *r, enum light_known known,
                                const uint32_t *others, unsigned count)
 {
-    for (unsigned i = 0; i < LIGHT_OTHERS; i++)
+    for (unsigned i = 0; known > LIGHT_NOTHING && i <= count && i < LIGHT_OTHERS; i++)
         atomic_store_explicit(&grid->others[r->id][i], i < count ? others[i] : SCENE_NONE, memory_order_relaxed);
     atomic_store_explicit(&grid->known[r->id], (uint8_t)(known | (unsigned)(r->side + 2) << LIGHT_KNOWN_BITS),
                           memory_order_release);

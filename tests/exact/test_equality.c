@@ -318,7 +318,7 @@ static void scales_equal(void **state)
 static void memory_changes_nothing(void **state)
 {
     (void)state;
-    enum { COUNT = 20000 };
+    enum { COUNT = 60000 };
     struct error err = {0};
     struct scene *scene = soup(12, COUNT, 1);
     struct light light = light_of(&(struct hard_scene){.light = {0.2, 6, 0.4}}, LIGHT_POINT);
@@ -329,7 +329,7 @@ static void memory_changes_nothing(void **state)
     uint32_t *kept = malloc(PIXELS * sizeof *kept);
     double sides[2];
     for (int tight = 0; tight < 2; tight++) {
-        struct exact_shadows *e = exact_shadows_create(scene, tight ? (size_t)COUNT * 172 : 0, &err);
+        struct exact_shadows *e = exact_shadows_create(scene, tight ? (size_t)COUNT * 170 + 6000 : 0, &err);
         assert_true(exact_shadows_set_light(e, &light, pool, &err));
         assert_non_null(exact_shadows_samples32(e, &view, pool, &receivers, &lit, &err));
         sides[tight] = exact_shadows_figures(e).grid_side;
