@@ -77,7 +77,7 @@ static bool traces_maps(const struct render_scene *s, const struct render_settin
     double side = size >= 0 ? settings->params.value[size] : SHADOW_FIT_SIDE;
     size_t texels = (size_t)(side * side);
     return flags & SHADOW_USES_MAPS && works_on_cpu(s, settings) ? producer_traces_map_on_cpu(&s->draw, texels)
-                                                                    : producer_traces_map(&s->draw, texels);
+                                                                 : producer_traces_map(&s->draw, texels);
 }
 
 static struct shadow_input input_for(struct renderer *r, struct render_scene *s, const struct render_settings *settings,

@@ -31,5 +31,5 @@ bool producer_traces_map_on_cpu(const struct draw_scene *scene, size_t texels)
     return scene->plain ? scene->scene->drawn_triangle_count > texels / RAYS_PER_TRIANGLE_ON_CPU : many_triangles(scene, texels);
 }
 
-/* docs/performance.md: one tap costs a software rasterizer about what it costs here, more of them several times as much. */
+/* docs/performance.md: one tap costs a software rasterizer three times what it costs here, more of them more. */
 bool producer_resolves_on_cpu(const struct draw_scene *scene) { return scene->gl->caps.software; }
