@@ -262,7 +262,7 @@ static void fill_tile(void *context, size_t tile, unsigned worker)
     const uint32_t *last = m->counts + (CHUNKS - 1) * (size_t)m->tiles * m->tiles * BINS;
     uint32_t first = tile == 0 ? 0 : last[tile * BINS - 1], end = last[tile * BINS + BINS - 1];
     map_tile_choose()(m, (uint32_t)(tile % m->tiles), (uint32_t)(tile / m->tiles), m->entries + first, end - first,
-                       m->cells + (size_t)m->slot[tile] * MAP_TILE * MAP_TILE);
+                      m->cells + (size_t)m->slot[tile] * MAP_TILE * MAP_TILE);
 }
 
 static bool build_tiles(struct geometry_map *m, struct job_pool *pool, struct error *err)

@@ -1,4 +1,4 @@
-/* Eight triangles over a tile of a geometry map, set up together: what map_tile.c marks texels by, a lane each. */
+/* Eight triangles over a tile of a geometry map, set up together: what map_tile_code.h marks texels by, a lane each. */
 #pragma once
 
 #include "shadow/light_lanes.h"
