@@ -61,6 +61,12 @@ LANES_INLINE struct vector_lanes octahedral_unfold(lanes u, lanes v)
     return (struct vector_lanes){u + lanes_pick(u >= 0, -t, t), v + lanes_pick(v >= 0, -t, t), w};
 }
 
+/* Their geometric normals, likewise. */
+LANES_INLINE struct vector_lanes pixel_lanes_geometric(lane_ints geometric)
+{
+    return octahedral_unfold(lanes_from((geometric << 16) >> 16) * (1.0f / 32767), lanes_from(geometric >> 16) * (1.0f / 32767));
+}
+
 LANES_INLINE lanes pixel_lanes_ray(const float at[3], const float dx[3], const float dy[3], int axis, lanes x, float y)
 {
     return at[axis] + x * dx[axis] + y * dy[axis];

@@ -3,18 +3,8 @@
 
 #include <string.h>
 
-#include "scene/pixel.h"
+#include "scene/pixel_lanes.h"
 #include "shadow/depth_pass.h"
-#include "base/lanes.h"
-
-struct vector_lanes {
-    lanes x, y, z;
-};
-
-LANES_INLINE lanes lanes_dot(const struct vector_lanes *a, const struct vector_lanes *b)
-{
-    return a->x * b->x + a->y * b->y + a->z * b->z;
-}
 
 /* The dot product with the first three of `row`. */
 LANES_INLINE lanes lanes_along(const float row[3], const struct vector_lanes *v)
@@ -32,63 +22,29 @@ struct receivers {
     lane_ints receives;
 };
 
-/* The first two words of eight pixels in a row. */
-LANES_INLINE void load_pixels(const struct pixel *p, lane_ints *geometric, lanes *depth)
-{
-#ifdef __AVX2__
-    const __m256i *q = (const __m256i *)p;
-    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
-    __m256i a = _mm256_unpacklo_epi32(_mm256_loadu_si256(q), _mm256_loadu_si256(q + 1));
-    __m256i b = _mm256_unpacklo_epi32(_mm256_loadu_si256(q + 2), _mm256_loadu_si256(q + 3));
-    *geometric = (lane_ints)_mm256_permutevar8x32_epi32(_mm256_unpacklo_epi64(a, b), order);
-    *depth = (lanes)_mm256_permutevar8x32_epi32(_mm256_unpackhi_epi64(a, b), order);
-#else
-    for (int i = 0; i < LANES; i++) {
-        (*geometric)[i] = (int32_t)p[i].geometric;
-        (*depth)[i] = p[i].depth;
-    }
-#endif
-}
-
-/* octahedral_raw() of shaders/pixel.glsl. */
-LANES_INLINE struct vector_lanes unfold(lane_ints geometric)
-{
-    lanes a = lanes_from((geometric << 16) >> 16) * (1.0f / 32767), b = lanes_from(geometric >> 16) * (1.0f / 32767);
-    lanes c = 1 - lanes_abs(a) - lanes_abs(b), t = lanes_max(-c, lanes_all(0));
-    return (struct vector_lanes){a + lanes_pick(a >= 0, -t, t), b + lanes_pick(b >= 0, -t, t), c};
-}
-
-LANES_INLINE lanes ray_part(const float at[3], const float dx[3], const float dy[3], int k, lanes x, float y)
-{
-    return at[k] + x * dx[k] + y * dy[k];
-}
-
 /* False: none of the eight receives light, and only `receives` is set. */
 LANES_INLINE bool receivers_at(const struct depth_job *job, const struct pixel *pixels, uint32_t x, uint32_t y,
                                struct receivers *r)
 {
-    lane_ints geometric;
-    load_pixels(pixels, &geometric, &r->depth);
+    struct pixel_lanes p = pixel_lanes_load(pixels);
+    r->depth = p.depth;
     r->receives = r->depth > 0;
     if (!lanes_bits(r->receives))
         return false;
-    const struct pixel_rays *rays = &job->rays;
     const float *light = job->light.light;
     lanes fx = (float)x + (lanes){0, 1, 2, 3, 4, 5, 6, 7};
-    float fy = (float)y;
-    r->direction.x = ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 0, fx, fy);
-    r->direction.y = ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 1, fx, fy);
-    r->direction.z = ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 2, fx, fy);
-    r->point.x = ray_part(rays->origin, rays->origin_dx, rays->origin_dy, 0, fx, fy) + r->depth * r->direction.x;
-    r->point.y = ray_part(rays->origin, rays->origin_dx, rays->origin_dy, 1, fx, fy) + r->depth * r->direction.y;
-    r->point.z = ray_part(rays->origin, rays->origin_dx, rays->origin_dy, 2, fx, fy) + r->depth * r->direction.z;
+    struct vector_lanes origin = pixel_lanes_origin(&job->rays, fx, (float)y);
+    r->direction = pixel_lanes_direction(&job->rays, fx, (float)y);
+    r->point.x = origin.x + r->depth * r->direction.x;
+    r->point.y = origin.y + r->depth * r->direction.y;
+    r->point.z = origin.z + r->depth * r->direction.z;
     r->v = (struct vector_lanes){lanes_all(light[0]), lanes_all(light[1]), lanes_all(light[2])};
     if (job->light.kind != LIGHT_DIRECTIONAL) {
         r->v.x -= r->point.x;
         r->v.y -= r->point.y;
         r->v.z -= r->point.z;
     }
-    r->normal = unfold(geometric);
+    r->normal = pixel_lanes_geometric(p.geometric);
     r->d2 = lanes_dot(&r->v, &r->v);
     r->n_v = lanes_dot(&r->normal, &r->v);
     r->n2 = lanes_dot(&r->normal, &r->normal);

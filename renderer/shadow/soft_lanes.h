@@ -235,13 +235,9 @@ LANES_INLINE lanes guide_slope(const struct blur *b, uint32_t x, uint32_t y)
     const struct depth_job *d = &b->job->depth;
     const struct pixel_rays *rays = &d->rays;
     struct pixel room[LANES];
-    lane_ints geometric;
-    lanes depth, fx = (float)x + (lanes){0, 1, 2, 3, 4, 5, 6, 7};
-    load_pixels(pixels_at(d, x, y, room), &geometric, &depth);
-    struct vector_lanes n = unfold(geometric);
-    struct vector_lanes ray = {ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 0, fx, (float)y),
-                               ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 1, fx, (float)y),
-                               ray_part(rays->direction, rays->direction_dx, rays->direction_dy, 2, fx, (float)y)};
+    struct pixel_lanes p = pixel_lanes_load(pixels_at(d, x, y, room));
+    lanes fx = (float)x + (lanes){0, 1, 2, 3, 4, 5, 6, 7};
+    struct vector_lanes n = pixel_lanes_geometric(p.geometric), ray = pixel_lanes_direction(rays, fx, (float)y);
     lanes n_d = lanes_dot(&n, &ray);
     if (b->job->parallel)
         return -lanes_along(b->axis == 0 ? rays->origin_dx : rays->origin_dy, &n) / n_d;
