@@ -40,6 +40,7 @@ static int ws_receive(struct net *net, struct peer *peer, struct lws *wsi, const
     struct connection *c = net_find(net, peer->id);
     if (!c)
         return -1;
+    lws_validity_confirmed(wsi); /* who writes lives, though it may not read, nor answer pings, for a while */
     if (lws_frame_is_binary(wsi))
         return close_with(wsi, 1003, "messages are JSON text");
     if (lws_is_first_fragment(wsi))
