@@ -156,8 +156,8 @@ bool lighting_run(struct lighting *l, const struct lighting_input *in, struct er
     static const float nothing[4];
     bool many = in->aa_side > 1;
     bool linear = in->display == LIGHTING_LINEAR;
-    if (lighting_fits_cpu(in) && visibility_is_on_cpu(in->visibility))
-        return run_on_cpu(l, in, err);
+    if (lighting_fits_cpu(in) && in->visibility->layers[0].values)
+        return visibility_need_values(in->visibility, gl, err) && run_on_cpu(l, in, err);
     GLenum format = linear ? GL_RGBA32F : GL_RGBA8, samples_format = linear ? GL_RGBA32F : GL_RGBA16F;
     const struct lights_block block = block_of(in);
     if (!gl_texture_size(&l->result, gl, format, width / in->aa_side, height / in->aa_side, err) ||

@@ -41,7 +41,7 @@ struct lighting {
     size_t room;             /* its pixels */
 };
 
-/* True if the CPU can do it (lighting_pixels.h); it does, where all of the visibility is there. */
+/* True if the CPU can do it (lighting_pixels.h); it does, where the visibility is kept there. */
 bool lighting_fits_cpu(const struct lighting_input *in);
 
 /* Writes `result`: RGBA32F if display is linear, else RGBA8. */

@@ -41,14 +41,6 @@ void visibility_bind(struct visibility *v, uint32_t layer)
     glClearNamedFramebufferfv(v->target.id, GL_COLOR, 0, dark);
 }
 
-bool visibility_is_on_cpu(const struct visibility *v)
-{
-    for (uint32_t i = 0; i < v->texture.layers; i++)
-        if (!v->layers[i].filled)
-            return false;
-    return true;
-}
-
 bool visibility_need_texture(struct visibility *v, struct gl_context *gl, struct error *err)
 {
     uint32_t width = v->texture.width;
@@ -59,22 +51,35 @@ bool visibility_need_texture(struct visibility *v, struct gl_context *gl, struct
     return gl_check(gl, err);
 }
 
-static bool read_device(const struct visibility *v, struct gl_context *gl, uint32_t layer, float *out)
+/* Rows [top, bottom) of a layer. */
+static bool read_device(const struct visibility *v, struct gl_context *gl, uint32_t layer, uint32_t top, uint32_t bottom,
+                        float *out, struct error *err)
 {
-    struct error err = {0};
-    const struct gl_texture *t = &v->texture;
-    glGetTextureSubImage(t->id, 0, 0, 0, (GLint)layer, (GLsizei)t->width, (GLsizei)t->height, 1, GL_RED, GL_FLOAT,
-                         (GLsizei)((size_t)t->width * t->height * sizeof *out), out);
-    return gl_check(gl, &err);
+    uint32_t width = v->texture.width, rows = bottom - top;
+    glGetTextureSubImage(v->texture.id, 0, 0, (GLint)top, (GLint)layer, (GLsizei)width, (GLsizei)rows, 1, GL_RED, GL_FLOAT,
+                         (GLsizei)((size_t)width * rows * sizeof *out), out);
+    return gl_check(gl, err);
+}
+
+bool visibility_need_values(struct visibility *v, struct gl_context *gl, struct error *err)
+{
+    for (uint32_t i = 0; i < v->texture.layers; i++) {
+        if (v->layers[i].filled || v->top >= v->bottom)
+            continue;
+        if (!read_device(v, gl, i, v->top, v->bottom, v->layers[i].values + (size_t)v->top * v->texture.width, err))
+            return false;
+    }
+    return true;
 }
 
 bool visibility_read(struct visibility *v, struct gl_context *gl, uint32_t layer, float *out)
 {
+    struct error err = {0};
     size_t width = v->texture.width, rows = v->top < v->bottom ? v->bottom - v->top : 0;
     if (layer >= v->texture.layers)
         return false;
     if (!v->layers[layer].filled)
-        return read_device(v, gl, layer, out);
+        return read_device(v, gl, layer, 0, v->texture.height, out, &err);
     memset(out, 0, width * v->texture.height * sizeof *out);
     memcpy(out + v->top * width, v->layers[layer].values + v->top * width, rows * width * sizeof *out);
     return true;

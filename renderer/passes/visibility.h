@@ -37,8 +37,8 @@ bool visibility_begin(struct visibility *v, struct gl_context *gl, uint32_t widt
 /* Binds the device's layer as the framebuffer, cleared. */
 void visibility_bind(struct visibility *v, uint32_t layer);
 
-/* All of the picture's layers were filled on the CPU. */
-bool visibility_is_on_cpu(const struct visibility *v);
+/* Brings to the CPU what a picture that is kept there has on the device; waits for it. */
+bool visibility_need_values(struct visibility *v, struct gl_context *gl, struct error *err);
 
 /* Brings to the device what was filled on the CPU. */
 bool visibility_need_texture(struct visibility *v, struct gl_context *gl, struct error *err);
