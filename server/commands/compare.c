@@ -27,7 +27,7 @@ struct compare_options {
     enum image_format format;
     const char *json; /* NULL: none */
     bool flicker[FLICKER_MOTIONS];
-    unsigned flicker_frames;
+    unsigned flicker_frames; /* 0: the default */
     unsigned oracle; /* length of its lists; 0: not wanted */
 };
 
@@ -165,6 +165,8 @@ static bool check_outputs(const struct compare_options *o, struct error *err)
     bool moves = o->flicker[FLICKER_LIGHT] || o->flicker[FLICKER_CAMERA];
     if (moves && o->against.kind != AGAINST_POINT && o->against.kind != AGAINST_SAMPLES32)
         return error_set(err, ERROR_USAGE, "flicker", "--flicker is accepted against point and samples32 only");
+    if (o->flicker_frames && !moves)
+        return error_set(err, ERROR_USAGE, "frames", "--frames counts the frames of --flicker, which is missing");
     return (!o->picture || output_check(o->picture, err)) && (!o->json || output_check(o->json, err));
 }
 
@@ -193,14 +195,14 @@ static bool report_progress(void *context, double done)
 static bool measure_flicker(const struct compare_options *o, struct stage *stage, struct flicker_figures *figures,
                             struct error *err)
 {
+    unsigned frames = o->flicker_frames ? o->flicker_frames : FLICKER_FRAMES_DEFAULT;
     for (int i = 0; i < FLICKER_MOTIONS; i++) {
         struct progress progress;
         if (!o->flicker[i])
             continue;
         progress_init(&progress, "moving", o->common.quiet);
         const struct reference_progress report = {report_progress, &progress};
-        bool good =
-            flicker_measure(stage, &o->against, (enum flicker_motion)i, o->flicker_frames, NULL, &report, &figures[i], err);
+        bool good = flicker_measure(stage, &o->against, (enum flicker_motion)i, frames, NULL, &report, &figures[i], err);
         progress_finish(&progress);
         if (!good)
             return false;
@@ -283,7 +285,7 @@ static bool compare(const struct compare_options *o, struct stage *stage, struct
 
 int command_compare(int argc, char **argv)
 {
-    struct compare_options options = {.flicker_frames = FLICKER_FRAMES_DEFAULT};
+    struct compare_options options = {0};
     struct stage stage = {0};
     struct error err = {0};
     const char *scene = NULL;

@@ -48,6 +48,7 @@ bad 64 '1 to 100000 frames' render builtin:box -o "$work/a.png" --progressive 0
 bad 64 'lists of 1 to 64' compare builtin:box --algorithm none --oracle 0
 bad 64 'light or camera' compare builtin:box --algorithm none --flicker sun
 bad 64 '3 to 10000 frames' compare builtin:box --algorithm none --flicker light --frames 2
+bad 64 'frames of --flicker, which is missing' compare builtin:box --algorithm none --frames 8
 bad 64 'against point and samples32 only' compare builtin:box --algorithm none --against sm --flicker light
 bad 64 '1 to 1048576 MiB' render builtin:box -o "$work/a.png" --memory 0
 bad 64 'algorithm' compare builtin:box --algorithm no_such_system
