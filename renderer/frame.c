@@ -142,7 +142,8 @@ static bool resolve_lights(struct renderer *r, const struct render_settings *set
     if (!visibility_begin(&r->visibility, &r->gl, view->width, view->height, layers, &r->gbuffer.tiles, keep, err))
         return false;
     for (unsigned i = 0; i < settings->light_count; i++) {
-        visibility_bind(&r->visibility, i);
+        if (!keep || !(settings->system->flags & SHADOW_FILLS))
+            visibility_bind(&r->visibility, i);
         inputs[i].layer = &r->visibility.layers[i];
         if (!bind_light(r, &inputs[i], settings->system->param_count, err) ||
             !settings->system->resolve(states[i]->state, &inputs[i], err))

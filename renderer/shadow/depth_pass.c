@@ -44,7 +44,7 @@ static struct depth_map place_map(const struct view *v, struct dvec3 camera_eye)
 bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err)
 {
     *job = (struct depth_job){.pixels = gbuffer_read_pixels(in->gbuffer, in->draw, err),
-                              .visibility = gbuffer_values(in->gbuffer, err),
+                              .visibility = pixel_values(in, err),
                               .width = in->view->width,
                               .height = in->view->height,
                               .top = in->gbuffer->tiles.top,

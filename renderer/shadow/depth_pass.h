@@ -77,7 +77,7 @@ const struct depth_kernel *depth_kernel_choose(void);
 size_t depth_job_count(const struct depth_job *job);
 
 /* All but filter, square and umbra, for a system with SHADOW_BIAS_PARAMS whose maps were prepared with in->resolve_on_cpu. `visibility` is
- * scratch of the picture. */
+ * pixel_values(). */
 bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err);
 
 /* A square of `side` texels, all alike. */

@@ -265,7 +265,7 @@ bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *i
     struct resolve_job job = {.in = in,
                               .decide = decide,
                               .state = state,
-                              .visibility = gbuffer_values(in->gbuffer, err),
+                              .visibility = pixel_values(in, err),
                               .map_count = g->count,
                               .width = in->view->width,
                               .top = in->gbuffer->tiles.top,

@@ -25,13 +25,19 @@ struct pixel_light pixel_light_of(const struct light *light, struct dvec3 camera
     return l;
 }
 
+float *pixel_values(const struct shadow_input *in, struct error *err)
+{
+    return in->layer && in->layer->values ? in->layer->values : gbuffer_values(in->gbuffer, err);
+}
+
 /* Where the layer stays on the device, its texture is what the framework bound. */
 bool pixel_upload(const struct shadow_input *in, const float *visibility, struct error *err)
 {
     const struct tiles *t = &in->gbuffer->tiles;
     size_t first = (size_t)t->top * in->view->width, rows = t->top < t->bottom ? t->bottom - t->top : 0;
     if (in->layer && in->layer->values) {
-        memcpy(in->layer->values + first, visibility + first, rows * in->view->width * sizeof *visibility);
+        if (visibility != in->layer->values)
+            memcpy(in->layer->values + first, visibility + first, rows * in->view->width * sizeof *visibility);
         in->layer->filled = true;
         return true;
     }

@@ -14,5 +14,8 @@ struct pixel_light {
 struct pixel_light pixel_light_of(const struct light *light, struct dvec3 camera_eye);
 void pixel_put(float out[3], struct dvec3 v);
 
-/* `visibility`: one value a pixel of in->view, to the layer that the framework bound; only rows that hold surfaces are looked at. */
+/* Room for one value a pixel of in->view: the layer's own where it has room, else scratch until the next call. */
+float *pixel_values(const struct shadow_input *in, struct error *err);
+
+/* `visibility`: one value a pixel of in->view, pixel_values() or other memory, to the layer; only rows that hold surfaces are looked at. */
 bool pixel_upload(const struct shadow_input *in, const float *visibility, struct error *err);

@@ -102,6 +102,7 @@ enum shadow_flags {
     SHADOW_EXACT = 16,      /* promises the reference's own answer: error test demands 0 */
     SHADOW_USES_FIT = 32,   /* wants shadow_fit, and chooses the resolution itself: maps come as SHADOW_FIT_SIDE a side */
     SHADOW_BRIGHTENS = 64,  /* full cover may leave some light, below one half */
+    SHADOW_FILLS = 128,     /* resolve fills in->layer where that has room: no framebuffer is bound then */
 };
 
 struct shadow_system {
@@ -117,7 +118,7 @@ struct shadow_system {
     bool (*init)(void *state, const struct shadow_input *in, struct error *err);    /* optional: allocations, programs */
     bool (*prepare)(void *state, const struct shadow_input *in, struct error *err); /* optional: maps, lists, trees */
     /* Writes one value in [0, 1] per pixel to the framebuffer bound by the framework (one R32F colour attachment of the picture's
-     * size, cleared to 0); 0 where there is no receiver (shaders/receiver.glsl). */
+     * size, cleared to 0), or to in->layer; 0 where there is no receiver (shaders/receiver.glsl). */
     bool (*resolve)(void *state, const struct shadow_input *in, struct error *err);
     void (*finish)(void *state);        /* optional; accepts half-initialised state */
     size_t (*bytes)(const void *state); /* optional: what the state holds on the GPU and CPU, now */

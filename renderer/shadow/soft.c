@@ -124,6 +124,8 @@ static bool run_term(struct soft *s, const struct shadow_input *in, struct error
 
 static bool resolve_on_cpu(struct soft *s, const struct shadow_input *in, struct error *err)
 {
+    if (s->maps.fit.map_count == 0)
+        return depth_pass_filter(&s->maps, in, DEPTH_ONE, NULL, 0, err);
     const struct soft_settings settings = {.radius = (float)light_radius(s, in),
                                            .near = (float)in->params[PARAM_NEAR],
                                            .far = (float)in->params[PARAM_FAR],
@@ -135,10 +137,10 @@ static bool resolve(void *state, const struct shadow_input *in, struct error *er
 {
     struct soft *s = state;
     GLint visibility;
-    if (s->maps.fit.map_count == 0)
-        return shadow_run_full_screen(in, "none.frag", NULL, err);
     if (in->resolve_on_cpu)
         return resolve_on_cpu(s, in, err);
+    if (s->maps.fit.map_count == 0)
+        return shadow_run_full_screen(in, "none.frag", NULL, err);
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &visibility);
     if (!reserve(s, in, err) || !bind(s, in, err) || !run_term(s, in, err))
         return false;
@@ -176,7 +178,7 @@ const struct shadow_system shadow_soft = {
     .title = "Distance-dependent soft shadows",
     .help = "Depth map; the shadow is blurred on the screen, the wider and lighter the farther its caster is away.",
     .lights = 1 << LIGHT_DIRECTIONAL | 1 << LIGHT_POINT | 1 << LIGHT_SPOT,
-    .flags = SHADOW_USES_MAPS | SHADOW_BRIGHTENS,
+    .flags = SHADOW_USES_MAPS | SHADOW_BRIGHTENS | SHADOW_FILLS,
     .params = params,
     .param_count = sizeof params / sizeof *params,
     .state_size = sizeof(struct soft),
