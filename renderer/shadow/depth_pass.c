@@ -41,7 +41,7 @@ static struct depth_map place_map(const struct view *v, struct dvec3 camera_eye)
     return m;
 }
 
-bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err)
+bool depth_job_begin(struct depth_job *job, const struct shadow_input *in, struct error *err)
 {
     *job = (struct depth_job){.pixels = gbuffer_read_pixels(in->gbuffer, in->draw, err),
                               .visibility = pixel_values(in, err),
@@ -50,16 +50,23 @@ bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const 
                               .top = in->gbuffer->tiles.top,
                               .bottom = in->gbuffer->tiles.bottom,
                               .rays = pixel_rays_of(in->view),
-                              .light = pixel_light_of(in->light, in->view->eye),
-                              .map_count = maps->fit.map_count,
-                              .texels = maps->texels,
-                              .bias = (float)in->params[SHADOW_PARAM_BIAS],
-                              .slope = (float)in->params[SHADOW_PARAM_SLOPE]};
+                              .light = pixel_light_of(in->light, in->view->eye)};
+    return job->pixels && job->visibility;
+}
+
+bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err)
+{
+    if (!depth_job_begin(job, in, err))
+        return false;
+    job->map_count = maps->fit.map_count;
+    job->texels = maps->texels;
+    job->bias = (float)in->params[SHADOW_PARAM_BIAS];
+    job->slope = (float)in->params[SHADOW_PARAM_SLOPE];
     for (unsigned i = 0; i < maps->fit.map_count; i++)
         job->maps[i] = place_map(&maps->fit.maps[i], in->view->eye);
     job->orthographic = maps->fit.maps[0].orthographic;
     job->side = (int32_t)maps->fit.maps[0].width;
-    return job->pixels && job->visibility;
+    return true;
 }
 
 void depth_square_flat(struct depth_square *square, int side)
@@ -81,6 +88,15 @@ bool depth_pass_filter(const struct light_maps *maps, const struct shadow_input 
     job.filter = filter;
     job.square = square;
     job.umbra = umbra;
+    job_pool_for(in->pool, depth_job_count(&job), depth_kernel_choose()->filter, &job);
+    return pixel_upload(in, job.visibility, err);
+}
+
+bool depth_pass_lit(const struct shadow_input *in, struct error *err)
+{
+    struct depth_job job;
+    if (!depth_job_begin(&job, in, err))
+        return false;
     job_pool_for(in->pool, depth_job_count(&job), depth_kernel_choose()->filter, &job);
     return pixel_upload(in, job.visibility, err);
 }

@@ -76,8 +76,10 @@ const struct depth_kernel *depth_kernel_choose(void);
 
 size_t depth_job_count(const struct depth_job *job);
 
-/* All but filter, square and umbra, for a system with SHADOW_BIAS_PARAMS whose maps were prepared with in->resolve_on_cpu. `visibility` is
- * pixel_values(). */
+/* Pixels and light, and no map: every receiver is lit. `visibility` is pixel_values(). */
+bool depth_job_begin(struct depth_job *job, const struct shadow_input *in, struct error *err);
+
+/* All but filter, square and umbra, for a system with SHADOW_BIAS_PARAMS whose maps were prepared with in->resolve_on_cpu. */
 bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err);
 
 /* A square of `side` texels, all alike. */
@@ -86,3 +88,6 @@ void depth_square_flat(struct depth_square *square, int side);
 /* The whole pass for systems that filter and no more. square: NULL for DEPTH_ONE. */
 bool depth_pass_filter(const struct light_maps *maps, const struct shadow_input *in, enum depth_filter filter,
                        const struct depth_square *square, float umbra, struct error *err);
+
+/* The whole pass where nothing shadows. */
+bool depth_pass_lit(const struct shadow_input *in, struct error *err);
