@@ -1,4 +1,5 @@
-/* Eight pixels' receivers, and where they lie on the light's maps. Included by the kernels only (depth_plain.c, depth_avx2.c). */
+/* Eight pixels' receivers, and where they lie on the light's maps. Included by kernels only (depth_plain.c, depth_avx2.c and
+ * the like). */
 #pragma once
 
 #include <string.h>
@@ -22,9 +23,8 @@ struct receivers {
     lane_ints receives;
 };
 
-/* False: none of the eight receives light, and only `receives` is set. */
-LANES_INLINE bool receivers_at(const struct depth_job *job, const struct pixel *pixels, uint32_t x, uint32_t y,
-                               struct receivers *r)
+/* Of eight pixels of row y, fx their columns. False: none of them receives light, and only `receives` is set. */
+LANES_INLINE bool receivers_of(const struct depth_job *job, const struct pixel *pixels, lanes fx, uint32_t y, struct receivers *r)
 {
     struct pixel_lanes p = pixel_lanes_load(pixels);
     r->depth = p.depth;
@@ -32,7 +32,6 @@ LANES_INLINE bool receivers_at(const struct depth_job *job, const struct pixel *
     if (!lanes_bits(r->receives))
         return false;
     const float *light = job->light.light;
-    lanes fx = (float)x + (lanes){0, 1, 2, 3, 4, 5, 6, 7};
     struct vector_lanes origin = pixel_lanes_origin(&job->rays, fx, (float)y);
     r->direction = pixel_lanes_direction(&job->rays, fx, (float)y);
     r->point.x = origin.x + r->depth * r->direction.x;
@@ -52,6 +51,18 @@ LANES_INLINE bool receivers_at(const struct depth_job *job, const struct pixel *
     if (job->light.kind == LIGHT_SPOT)
         r->receives &= -lanes_along(job->light.axis, &r->v) >= job->light.cosine * lanes_sqrt(r->d2);
     return lanes_bits(r->receives) != 0;
+}
+
+/* Of neighbours, the first at (x, y). */
+LANES_INLINE bool receivers_at(const struct depth_job *job, const struct pixel *pixels, uint32_t x, uint32_t y,
+                               struct receivers *r)
+{
+    return receivers_of(job, pixels, (float)x + (lanes){0, 1, 2, 3, 4, 5, 6, 7}, y, r);
+}
+
+LANES_INLINE lanes tangent_of(const struct receivers *r)
+{
+    return lanes_sqrt(lanes_max(r->n2 * r->d2 / (r->n_v * r->n_v) - 1, lanes_all(0)));
 }
 
 /* struct MapPoint of shaders/maps.glsl. */
@@ -109,8 +120,7 @@ LANES_INLINE void place_receivers(const struct depth_job *job, const struct rece
 /* The depth that is compared: less the bias, constant + slope x texel x tangent of the angle of incidence. */
 LANES_INLINE lanes biased_depth(const struct depth_job *job, const struct receivers *r, const struct map_points *m)
 {
-    lanes tangent = lanes_sqrt(lanes_max(r->n2 * r->d2 / (r->n_v * r->n_v) - 1, lanes_all(0)));
-    return m->depth - (job->bias + job->slope * m->texel * tangent);
+    return m->depth - (job->bias + job->slope * m->texel * tangent_of(r));
 }
 
 /* Index of texel (x, y) of each lane's map. */

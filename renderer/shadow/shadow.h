@@ -71,7 +71,7 @@ struct shadow_input {
         layer; /* what resolve fills, in place of the framebuffer (passes/visibility.h), where it has room and the system works on
                                      * the CPU; NULL outside resolve */
     bool trace_maps;     /* make depth maps by tracing (draw/producer.h) */
-    bool resolve_on_cpu; /* where a system can do either (draw/producer.h) */
+    bool resolve_on_cpu; /* where a system can do either (draw/producer.h); with SHADOW_USES_FIT only what is traced */
     size_t memory;       /* bytes that a light's structure may take; 0: no limit */
     struct job_pool *pool;
     struct gl_context *gl;
@@ -102,7 +102,7 @@ enum shadow_flags {
     SHADOW_EXACT = 16,      /* promises the reference's own answer: error test demands 0 */
     SHADOW_USES_FIT = 32,   /* wants shadow_fit, and chooses the resolution itself: maps come as SHADOW_FIT_SIDE a side */
     SHADOW_BRIGHTENS = 64,  /* full cover may leave some light, below one half */
-    SHADOW_FILLS = 128,     /* resolve fills in->layer where that has room: no framebuffer is bound then */
+    SHADOW_FILLS = 128,     /* resolve_on_cpu fills in->layer where that has room: no framebuffer is bound then */
 };
 
 struct shadow_system {

@@ -40,6 +40,7 @@ static const struct {
                {"pcf:size=256", 0.001},
                {"apcf:size=256", 0.001},
                {"soft:size=256", 0.002},
+               {"none", 0.001},
                {"sm:size=256,bias=0,slope=0.5,fit=cube", 0.002},
                {"pcf:size=256,kernel=1", 0.001},
                {"pcf:size=64,kernel=31", 0.001},
@@ -47,20 +48,34 @@ static const struct {
                {"apcf:size=256,template=9,weights=sum,umbra=0.25", 0.001},
                {"apcf:size=64,template=3,weights=flat", 0.002},
                {"soft:size=128,near=1,far=4,lift=0.5", 0.002}};
-enum { PLAIN = 4, ALL = sizeof systems / sizeof systems[0] };
+enum { PLAIN = 5, ALL = sizeof systems / sizeof systems[0] };
 
-/* `count` of the systems; maps: what the light needs, 0: unknown. */
+/* maps: what the light needs of a system that uses some, 0: unknown. */
+static void check_system(struct set *set, const char *name, const char *algorithm, double most, unsigned maps)
+{
+    struct shot gpu = shot_by(set, RESOLVE_PASS_GPU, algorithm), cpu = shot_by(set, RESOLVE_PASS_CPU, algorithm);
+    assert_true(maps == 0 || gpu.info.map_count == 0 || gpu.info.map_count == maps);
+    double share = share_of_others(&gpu, &cpu);
+    if (share > most)
+        fail_msg("%s, %s: %g of the pixels differ between GPU and CPU", name, algorithm, share);
+    shot_drop(&gpu);
+    shot_drop(&cpu);
+}
+
 static void check(struct set *set, const char *name, size_t count, unsigned maps)
 {
-    for (size_t i = 0; i < count; i++) {
-        struct shot gpu = shot_by(set, RESOLVE_PASS_GPU, systems[i].name), cpu = shot_by(set, RESOLVE_PASS_CPU, systems[i].name);
-        assert_true(maps == 0 || gpu.info.map_count == maps);
-        double share = share_of_others(&gpu, &cpu);
-        if (share > systems[i].share)
-            fail_msg("%s, %s: %g of the pixels differ between GPU and CPU", name, systems[i].name, share);
-        shot_drop(&gpu);
-        shot_drop(&cpu);
-    }
+    for (size_t i = 0; i < count; i++)
+        check_system(set, name, systems[i].name, systems[i].share, maps);
+}
+
+/* Rasterized pages are the GPU's only. */
+static void check_trees(struct set *set, const char *name, unsigned maps)
+{
+    enum camera_pass before = set->settings.map_pass;
+    set->settings.map_pass = CAMERA_PASS_TRACED;
+    check_system(set, name, "asm:budget=2", 0.001, maps);
+    check_system(set, name, "asm:budget=1,analyse=3,detail=1,bias=0,slope=0.5,fit=cube", 0.001, 0);
+    set->settings.map_pass = before;
 }
 
 static void test_scenes_agree(void **state)
@@ -75,6 +90,19 @@ static void test_scenes_agree(void **state)
         set.settings.map_pass = CAMERA_PASS_TRACED;
         set.settings.camera_pass = CAMERA_PASS_TRACED;
         check(&set, names[i], PLAIN, 0);
+        check_trees(&set, names[i], 0);
+        set_strike(&set);
+    }
+}
+
+static void test_trees_agree(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"builtin:ball", "builtin:hard-09-thin", "builtin:hard-15-offset",
+                                        "builtin:hard-17-ratio"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct set set = set_load(&studio, names[i]);
+        check_trees(&set, names[i], 0);
         set_strike(&set);
     }
 }
@@ -106,19 +134,25 @@ static void test_lights_agree(void **state)
     struct set set = make_boxes();
     set.settings.lights[0] = made_light(LIGHT_DIRECTIONAL, dvec3(2, 4, 1), dvec3(0, 0, 0));
     check(&set, "directional", ALL, 1);
+    check_trees(&set, "directional", 1);
     set.settings.lights[0] = made_light(LIGHT_POINT, dvec3(2, 4, 1), dvec3(0, 0, 0));
     check(&set, "point", PLAIN, 0);
+    check_trees(&set, "point", 0);
     set.settings.lights[0].range = 4.5;
     check(&set, "point with a range", 1, 0);
+    check_trees(&set, "point with a range", 0);
     set.settings.lights[0] = made_light(LIGHT_POINT, dvec3(0.1, 0.2, 0.05), dvec3(0, 0, 0));
     check(&set, "among them", ALL, 6);
+    check_trees(&set, "among them", 6);
     set.settings.lights[0] = made_light(LIGHT_SPOT, dvec3(1, 4, 0.5), dvec3(0, 0, 0));
     set.settings.lights[0].outer = 0.3;
     check(&set, "spot", PLAIN, 1);
+    check_trees(&set, "spot", 1);
     set.settings.camera.orthographic = true;
     set.settings.camera.ymag = 2;
     set.settings.camera.far = 20;
     check(&set, "spot, orthographic camera", PLAIN, 1);
+    check_trees(&set, "spot, orthographic camera", 1);
     set_strike(&set);
 }
 
@@ -143,6 +177,7 @@ static void test_textures_agree(void **state)
     for (int traced = 0; traced < 2; traced++) {
         set.settings.camera_pass = set.settings.map_pass = traced ? CAMERA_PASS_TRACED : CAMERA_PASS_RASTER;
         check(&set, traced ? "holes, traced" : "holes, rasterized", PLAIN, 0);
+        check_trees(&set, "holes", 0);
     }
     set.settings.lights[1] = made_light(LIGHT_DIRECTIONAL, dvec3(-1, 3, 0.5), dvec3(0, 0, 0));
     set.settings.light_count = 2;
@@ -171,6 +206,12 @@ static void test_others_do_not_agree(void **state)
     assert_true(share_of_others(&a, &b) > 0.002);
     shot_drop(&a);
     shot_drop(&b);
+    set.settings.map_pass = CAMERA_PASS_TRACED;
+    a = shot_by(&set, RESOLVE_PASS_GPU, "asm:budget=2");
+    b = shot_by(&set, RESOLVE_PASS_CPU, "asm:budget=2,detail=0.5");
+    assert_true(share_of_others(&a, &b) > 0.002);
+    shot_drop(&a);
+    shot_drop(&b);
     set_strike(&set);
 }
 
@@ -194,8 +235,8 @@ static void test_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scenes_agree),        cmocka_unit_test(test_lights_agree), cmocka_unit_test(test_textures_agree),
-        cmocka_unit_test(test_others_do_not_agree), cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_scenes_agree),   cmocka_unit_test(test_trees_agree),         cmocka_unit_test(test_lights_agree),
+        cmocka_unit_test(test_textures_agree), cmocka_unit_test(test_others_do_not_agree), cmocka_unit_test(test_bytes),
     };
     if (!studio_open(&studio, NULL, NULL))
         return 77;

@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -16,14 +17,20 @@
 
 size_t asm_analysis_slot_bytes(void) { return (CELLS + 2) * sizeof(uint32_t); }
 
-size_t asm_analysis_bytes(const struct asm_analysis *a) { return a->counters.size; }
+size_t asm_analysis_bytes(const struct asm_analysis *a) { return a->counters.size + a->kept_bytes; }
 
 bool asm_analysis_init(struct asm_analysis *a, struct gl_context *gl, uint32_t slots, struct error *err)
 {
     memset(a, 0, sizeof *a);
     a->slots = slots;
+    size_t size = slots * asm_analysis_slot_bytes() + LEVELS * sizeof(uint32_t);
+    if (!gl) {
+        a->kept = calloc(1, size);
+        a->kept_bytes = a->kept ? size : 0;
+        return a->kept || error_set(err, ERROR_TRY_AGAIN, "budget", "out of memory for a shadow tree's counters");
+    }
     glCreateBuffers(1, &a->counters.id);
-    a->counters.size = slots * asm_analysis_slot_bytes() + LEVELS * sizeof(uint32_t);
+    a->counters.size = size;
     glNamedBufferStorage(a->counters.id, (GLsizeiptr)a->counters.size, NULL, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
     asm_analysis_clear(a);
     return gl_check(gl, err);
@@ -40,12 +47,15 @@ void asm_analysis_finish(struct asm_analysis *a)
 {
     drop_fence(a);
     gl_buffer_finish(&a->counters);
+    free(a->kept);
     memset(a, 0, sizeof *a);
 }
 
 bool asm_analysis_start(struct asm_analysis *a, const struct shadow_input *in, const char *defines, unsigned every,
                         struct error *err)
 {
+    if (a->fence)
+        return true;
     char all[256];
     snprintf(all, sizeof all, "LIGHT %d\n%s", (int)in->light->kind, defines);
     struct gl_program *program = gl_programs_get(in->gl->programs, "asm_analysis.comp", NULL, all, err);
@@ -56,32 +66,54 @@ bool asm_analysis_start(struct asm_analysis *a, const struct shadow_input *in, c
     uint32_t columns = (in->view->width + every - 1) / every;
     glDispatchCompute((columns + GROUP - 1) / GROUP, (in->view->height + GROUP - 1) / GROUP, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-    drop_fence(a);
     a->fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     a->turn = (a->turn + 1) % every;
     return gl_check(in->gl, err);
 }
 
-bool asm_analysis_map(struct asm_analysis *a, struct asm_counters *out)
+static uint32_t *map_gpu(struct asm_analysis *a)
 {
     if (!a->fence)
-        return false;
+        return NULL;
     GLenum done = glClientWaitSync(a->fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
     if (done != GL_ALREADY_SIGNALED && done != GL_CONDITION_SATISFIED)
-        return false;
+        return NULL;
     drop_fence(a);
-    uint32_t *all = glMapNamedBufferRange(a->counters.id, 0, (GLsizeiptr)a->counters.size, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
-    if (!all)
-        return false;
-    size_t slots = a->slots;
-    *out = (struct asm_counters){all, all + slots * CELLS, all + slots * (CELLS + 1), all + slots * (CELLS + 2)};
-    return true;
+    return glMapNamedBufferRange(a->counters.id, 0, (GLsizeiptr)a->counters.size, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
 }
 
-void asm_analysis_unmap(struct asm_analysis *a) { glUnmapNamedBuffer(a->counters.id); }
+static struct asm_counters counters_at(uint32_t *all, size_t slots)
+{
+    return (struct asm_counters){all, all + slots * CELLS, all + slots * (CELLS + 1), all + slots * (CELLS + 2)};
+}
+
+struct asm_counters asm_analysis_count(struct asm_analysis *a, unsigned every)
+{
+    a->counted = true;
+    a->turn = (a->turn + 1) % every;
+    return counters_at(a->kept, a->slots);
+}
+
+bool asm_analysis_map(struct asm_analysis *a, struct asm_counters *out)
+{
+    uint32_t *all = a->kept ? (a->counted ? a->kept : NULL) : map_gpu(a);
+    a->counted = false;
+    if (all)
+        *out = counters_at(all, a->slots);
+    return all;
+}
+
+void asm_analysis_unmap(struct asm_analysis *a)
+{
+    if (!a->kept)
+        glUnmapNamedBuffer(a->counters.id);
+}
 
 void asm_analysis_clear(struct asm_analysis *a)
 {
     static const uint32_t none;
-    glClearNamedBufferData(a->counters.id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    if (a->kept)
+        memset(a->kept, 0, a->kept_bytes);
+    else
+        glClearNamedBufferData(a->counters.id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
 }

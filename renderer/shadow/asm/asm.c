@@ -11,6 +11,7 @@
 #include "gl/texture.h"
 #include "passes/gbuffer.h"
 #include "shadow/asm/analysis.h"
+#include "shadow/asm/look_up.h"
 #include "shadow/asm/pace.h"
 #include "shadow/asm/pages.h"
 #include "shadow/asm/place.h"
@@ -111,8 +112,9 @@ static void release(struct state *s)
 
 static bool make_room(struct state *s, const struct shadow_input *in, uint32_t slots, struct error *err)
 {
-    return asm_tree_init(&s->tree, in->gl, slots, err) && asm_pages_init(&s->pages, in->gl, slots, err) &&
-           asm_analysis_init(&s->analysis, in->gl, slots, err) && asm_refine_init(&s->refine, err);
+    struct gl_context *gl = in->resolve_on_cpu ? NULL : in->gl;
+    return asm_tree_init(&s->tree, gl, slots, err) && asm_pages_init(&s->pages, gl, slots, err) &&
+           asm_analysis_init(&s->analysis, gl, slots, err) && asm_refine_init(&s->refine, err);
 }
 
 static bool plant(struct state *s, const struct shadow_input *in, struct error *err)
@@ -263,16 +265,39 @@ static bool bind(struct state *s, const struct shadow_input *in, struct error *e
     return true;
 }
 
-static bool resolve(void *state, const struct shadow_input *in, struct error *err)
+static bool resolve_on_gpu(struct state *s, const struct shadow_input *in, struct error *err)
 {
-    struct state *s = state;
     char defines[64];
     if (s->empty)
         return shadow_run_full_screen(in, "none.frag", NULL, err);
     snprintf(defines, sizeof defines, "MAPS %u\nMAP_PERSPECTIVE %d\n", s->tree.map_count, !s->tree.maps[0].orthographic);
     return bind(s, in, err) && shadow_run_full_screen(in, "asm.frag", defines, err) &&
-           (s->converged || s->analysis.fence ||
-            asm_analysis_start(&s->analysis, in, defines, (unsigned)in->params[PARAM_ANALYSE], err));
+           (s->converged || asm_analysis_start(&s->analysis, in, defines, (unsigned)in->params[PARAM_ANALYSE], err));
+}
+
+static bool resolve_on_cpu(struct state *s, const struct shadow_input *in, struct error *err)
+{
+    struct asm_job job;
+    unsigned every = (unsigned)in->params[PARAM_ANALYSE];
+    if (s->empty)
+        return depth_pass_lit(in, err);
+    if (!asm_job_init(&job, &s->tree, &s->pages, in, err))
+        return false;
+    job.depth.bias = (float)in->params[PARAM_BIAS];
+    job.depth.slope = (float)in->params[PARAM_SLOPE];
+    job.detail = (float)in->params[PARAM_DETAIL];
+    job.block.asm_counts[2] = (int)every;
+    job.block.asm_counts[3] = (int)s->analysis.turn;
+    bool analyse = !s->converged && !s->analysis.counted; /* equal lights share this state */
+    if (analyse)
+        job.counters = asm_analysis_count(&s->analysis, every);
+    asm_job_run(&job, in->pool, analyse);
+    return pixel_upload(in, job.depth.visibility, err);
+}
+
+static bool resolve(void *state, const struct shadow_input *in, struct error *err)
+{
+    return in->resolve_on_cpu ? resolve_on_cpu(state, in, err) : resolve_on_gpu(state, in, err);
 }
 
 static void finish(void *state)
@@ -326,7 +351,7 @@ const struct shadow_system shadow_asm = {
     .title = "Adaptive shadow map",
     .help = "A tree of small depth maps, finer where the camera needs it, within a budget of memory.",
     .lights = 1 << LIGHT_DIRECTIONAL | 1 << LIGHT_POINT | 1 << LIGHT_SPOT,
-    .flags = SHADOW_USES_FIT | SHADOW_VIEW_DRIVEN | SHADOW_BINARY,
+    .flags = SHADOW_USES_FIT | SHADOW_VIEW_DRIVEN | SHADOW_BINARY | SHADOW_FILLS,
     .params = params,
     .param_count = sizeof params / sizeof *params,
     .state_size = sizeof(struct state),

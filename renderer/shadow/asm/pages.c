@@ -22,13 +22,31 @@ size_t asm_pages_fixed_bytes(void) { return BATCH * asm_pages_slot_bytes(); }
 
 size_t asm_pages_bytes(const struct asm_pages *p)
 {
-    return p->depths.bytes + p->ids.bytes + (p->traced_depths ? asm_pages_fixed_bytes() : 0) + p->draw.rows.size +
+    return p->depths.bytes + p->ids.bytes + p->kept_bytes + (p->traced_depths ? asm_pages_fixed_bytes() : 0) + p->draw.rows.size +
            p->draw.commands.size + p->draw.block.size;
+}
+
+static bool out_of_memory(struct error *err)
+{
+    return error_set(err, ERROR_TRY_AGAIN, "budget", "out of memory for shadow pages");
+}
+
+static bool keep(struct asm_pages *p, uint32_t slots, struct error *err)
+{
+    size_t texels = (size_t)slots * TEXELS;
+    p->kept_depths = calloc(texels, sizeof *p->kept_depths);
+    p->kept_ids = calloc(texels, sizeof *p->kept_ids);
+    if (!p->kept_depths || !p->kept_ids)
+        return out_of_memory(err);
+    p->kept_bytes = texels * (sizeof *p->kept_depths + sizeof *p->kept_ids);
+    return true;
 }
 
 bool asm_pages_init(struct asm_pages *p, struct gl_context *gl, uint32_t slots, struct error *err)
 {
     memset(p, 0, sizeof *p);
+    if (!gl)
+        return keep(p, slots, err);
     uint32_t width = ASM_COLUMNS * ASM_PAGE, height = slots / ASM_COLUMNS * ASM_PAGE;
     return gl_texture_size(&p->depths, gl, GL_DEPTH_COMPONENT32F, width, height, err) &&
            gl_texture_size(&p->ids, gl, GL_R32UI, width, height, err);
@@ -40,6 +58,8 @@ void asm_pages_finish(struct asm_pages *p)
     gl_texture_finish(&p->ids);
     gl_target_finish(&p->target);
     draw_view_finish(&p->draw);
+    free(p->kept_depths);
+    free(p->kept_ids);
     free(p->traced_depths);
     free(p->traced_ids);
     memset(p, 0, sizeof *p);
@@ -54,15 +74,28 @@ static bool need_room(struct asm_pages *p, struct error *err)
         p->traced_depths = malloc(BATCH * TEXELS * sizeof *p->traced_depths);
     if (!p->traced_ids)
         p->traced_ids = malloc(BATCH * TEXELS * sizeof *p->traced_ids);
-    return (p->traced_depths && p->traced_ids) || error_set(err, ERROR_TRY_AGAIN, "budget", "out of memory for shadow pages");
+    return (p->traced_depths && p->traced_ids) || out_of_memory(err);
 }
 
-static void upload(struct asm_pages *p, uint32_t x, uint32_t y, uint32_t width, size_t from)
+static void upload(struct asm_pages *p, uint32_t slot, uint32_t width, size_t from)
 {
-    glTextureSubImage2D(p->depths.id, 0, (GLint)x, (GLint)y, (GLsizei)width, ASM_PAGE, GL_DEPTH_COMPONENT, GL_FLOAT,
-                        p->traced_depths + from);
-    glTextureSubImage2D(p->ids.id, 0, (GLint)x, (GLint)y, (GLsizei)width, ASM_PAGE, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                        p->traced_ids + from);
+    GLint x = (GLint)slot_x(slot), y = (GLint)slot_y(slot);
+    glTextureSubImage2D(p->depths.id, 0, x, y, (GLsizei)width, ASM_PAGE, GL_DEPTH_COMPONENT, GL_FLOAT, p->traced_depths + from);
+    glTextureSubImage2D(p->ids.id, 0, x, y, (GLsizei)width, ASM_PAGE, GL_RED_INTEGER, GL_UNSIGNED_INT, p->traced_ids + from);
+}
+
+/* Texels from `from` on, rows of `width`, are those of the slots from `slot` on that lie abreast. */
+static void put_traced(struct asm_pages *p, uint32_t slot, uint32_t width, size_t from)
+{
+    if (!p->kept_depths) {
+        upload(p, slot, width, from);
+        return;
+    }
+    for (uint32_t i = 0; i < width * ASM_PAGE; i += ASM_PAGE) {
+        size_t to = (slot + i % width / ASM_PAGE) * (size_t)TEXELS + i / width * ASM_PAGE;
+        memcpy(p->kept_depths + to, p->traced_depths + from + i, ASM_PAGE * sizeof *p->kept_depths);
+        memcpy(p->kept_ids + to, p->traced_ids + from + i, ASM_PAGE * sizeof *p->kept_ids);
+    }
 }
 
 /* `views` of `width` x ASM_PAGE texels each, as many as fit. */
@@ -119,7 +152,7 @@ static void trace_root(struct asm_pages *p, const struct tracer *tracer, const s
             views[i] = root_row(tree, map, (first + i) * ASM_PAGE);
         trace(p, tracer, views, count, tree->root_side, in);
         for (uint32_t i = 0; i < count; i++)
-            upload(p, column * ASM_PAGE, (row + first + i) * ASM_PAGE, tree->root_side, (size_t)i * tree->root_side * ASM_PAGE);
+            put_traced(p, (row + first + i) * ASM_COLUMNS + column, tree->root_side, (size_t)i * tree->root_side * ASM_PAGE);
     }
 }
 
@@ -173,7 +206,7 @@ bool asm_pages_fill(struct asm_pages *p, const struct asm_tree *tree, const uint
             views[i] = asm_tree_view(tree, slots[first + i]);
         trace(p, tracer, views, n, ASM_PAGE, in);
         for (size_t i = 0; i < n; i++)
-            upload(p, slot_x(slots[first + i]), slot_y(slots[first + i]), ASM_PAGE, i * TEXELS);
+            put_traced(p, slots[first + i], ASM_PAGE, i * TEXELS);
     }
     return gl_check(in->gl, err);
 }

@@ -11,15 +11,18 @@
 #include "shadow/asm/tree.h"
 
 struct asm_pages {
-    struct gl_texture depths; /* D32F, ASM_COLUMNS slots wide */
+    struct gl_texture depths; /* D32F, ASM_COLUMNS slots wide; for shaders, as what follows */
     struct gl_texture ids;    /* R32UI, likewise */
     struct gl_target target;
     struct draw_view draw;
-    float *traced_depths; /* on the way to the textures */
+    float *kept_depths; /* for the CPU instead: a slot's texels after the other's, row by row; owned */
+    uint32_t *kept_ids;
+    size_t kept_bytes;    /* of both */
+    float *traced_depths; /* on the way to either */
     uint32_t *traced_ids;
 };
 
-/* `slots`: a multiple of ASM_COLUMNS. */
+/* `slots`: a multiple of ASM_COLUMNS. gl: NULL for pages that the CPU looks up; these are traced. */
 bool asm_pages_init(struct asm_pages *p, struct gl_context *gl, uint32_t slots, struct error *err);
 void asm_pages_finish(struct asm_pages *p);
 /* Bytes a slot takes; that all take beside their slots; that all take now. */

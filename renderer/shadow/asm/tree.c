@@ -16,7 +16,8 @@ size_t asm_tree_slot_bytes(void) { return sizeof(struct asm_node) + sizeof(uint3
 
 size_t asm_tree_bytes(const struct asm_tree *t)
 {
-    return t->slots * (sizeof(struct asm_node) + sizeof(uint32_t)) + t->table.size;
+    return t->slots * (sizeof(struct asm_node) + sizeof(uint32_t)) + t->table.size +
+           (t->cells ? t->slots * CELLS * sizeof *t->cells : 0);
 }
 
 /* The last slots are taken first, so that the roots, which are planted at the front, find their places free. */
@@ -35,19 +36,22 @@ bool asm_tree_init(struct asm_tree *t, struct gl_context *gl, uint32_t slots, st
     memset(t, 0, sizeof *t);
     t->nodes = calloc(slots, sizeof *t->nodes);
     t->free = calloc(slots, sizeof *t->free);
-    if (!t->nodes || !t->free) {
+    if (!gl)
+        t->cells = calloc((size_t)slots * CELLS, sizeof *t->cells);
+    if (!t->nodes || !t->free || (!gl && !t->cells)) {
         asm_tree_finish(t);
         return error_set(err, ERROR_TRY_AGAIN, "budget", "out of memory for a tree of %u pages", slots);
     }
     t->slots = slots;
     free_all(t);
-    return gl_buffer_set(&t->table, gl, NULL, (size_t)slots * CELLS * sizeof(uint32_t), GL_R32UI, err);
+    return !gl || gl_buffer_set(&t->table, gl, NULL, (size_t)slots * CELLS * sizeof(uint32_t), GL_R32UI, err);
 }
 
 void asm_tree_finish(struct asm_tree *t)
 {
     free(t->nodes);
     free(t->free);
+    free(t->cells);
     gl_buffer_finish(&t->table);
     memset(t, 0, sizeof *t);
 }
@@ -70,9 +74,17 @@ void asm_tree_root_place(const struct asm_tree *t, unsigned map, uint32_t *colum
     *row = map / abreast * pages;
 }
 
-void asm_tree_plant(struct asm_tree *t, const struct view *maps, unsigned map_count)
+static void clear_cells(struct asm_tree *t)
 {
     static const uint32_t none;
+    if (t->cells)
+        memset(t->cells, 0, t->slots * CELLS * sizeof *t->cells);
+    else
+        glClearNamedBufferData(t->table.id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+}
+
+void asm_tree_plant(struct asm_tree *t, const struct view *maps, unsigned map_count)
+{
     t->map_count = map_count;
     t->root_side = asm_tree_root_side(t->slots, map_count);
     memcpy(t->maps, maps, map_count * sizeof *maps);
@@ -88,12 +100,16 @@ void asm_tree_plant(struct asm_tree *t, const struct view *maps, unsigned map_co
         }
     }
     free_all(t);
-    glClearNamedBufferData(t->table.id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    clear_cells(t);
 }
 
 static void set_child(struct asm_tree *t, uint32_t slot, unsigned cell, uint32_t child)
 {
-    glNamedBufferSubData(t->table.id, (GLintptr)(((size_t)slot * CELLS + cell) * sizeof child), sizeof child, &child);
+    size_t at = (size_t)slot * CELLS + cell;
+    if (t->cells)
+        t->cells[at] = child;
+    else
+        glNamedBufferSubData(t->table.id, (GLintptr)(at * sizeof child), sizeof child, &child);
 }
 
 uint32_t asm_tree_add(struct asm_tree *t, uint32_t parent, unsigned cell)
@@ -126,11 +142,10 @@ void asm_tree_remove(struct asm_tree *t, uint32_t slot)
 
 void asm_tree_prune(struct asm_tree *t)
 {
-    static const uint32_t none;
     for (uint32_t i = 0; i < t->slots; i++)
         t->nodes[i].children = 0;
     free_all(t);
-    glClearNamedBufferData(t->table.id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    clear_cells(t);
 }
 
 struct view asm_tree_view(const struct asm_tree *t, uint32_t slot)

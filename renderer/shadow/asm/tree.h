@@ -33,10 +33,12 @@ struct asm_tree {
     struct asm_node *nodes; /* a slot each */
     uint32_t *free;         /* free slots, the next to be taken last */
     uint32_t free_count;
-    struct gl_buffer table; /* UNIT_ASM_TABLE */
+    /* Child of each cell of each slot, 0: none. */
+    struct gl_buffer table; /* UNIT_ASM_TABLE; for shaders */
+    uint32_t *cells;        /* for the CPU, instead */
 };
 
-/* Makes room; every slot is free. */
+/* Makes room; every slot is free. gl: NULL for a tree that the CPU looks up. */
 bool asm_tree_init(struct asm_tree *t, struct gl_context *gl, uint32_t slots, struct error *err);
 void asm_tree_finish(struct asm_tree *t);
 /* Bytes a slot takes, and that all take now. */
