@@ -66,7 +66,7 @@ static double figure(const struct frame_info *info, const char *name)
     return 0;
 }
 
-/* However many cameras, lights and frames; rasterized, traced. */
+/* However many cameras, lights and frames; rasterized, traced; by shaders, on the CPU. */
 static void test_never_over_budget(void **state)
 {
     (void)state;
@@ -80,6 +80,7 @@ static void test_never_over_budget(void **state)
         for (int frame = 0; frame < 48; frame++) {
             set.settings.camera = set.scene->cameras[frame / 12 % set.scene->camera_count];
             set.settings.map_pass = frame == 40 ? CAMERA_PASS_RASTER : CAMERA_PASS_TRACED;
+            set.settings.resolve_pass = frame < 30 || frame > 44 ? RESOLVE_PASS_CPU : RESOLVE_PASS_GPU;
             set.settings.lights[0].position.x = frame < 36 ? 0 : 0.01 * frame;
             struct frame_info info = take_frame(&set, visibility);
             assert_true(info.shadow_bytes > 0 && info.shadow_bytes <= (size_t)budgets[b] << 20);

@@ -145,7 +145,8 @@ void asm_refine_run(struct asm_refine *r, struct asm_tree *tree, const struct as
     size_t count = find_requests(r, tree, counters);
     for (size_t i = 0; i < count && r->made_count < most && r->made_count < ASM_REQUESTS; i++) {
         const struct asm_request *q = &r->requests[i];
-        if (tree->nodes[q->key / CELLS].parent == ASM_FREE)
+        /* The page that asks may have given way since; its slot may even be another page's, whose counts start from nothing. */
+        if (tree->nodes[q->key / CELLS].parent == ASM_FREE || counters->cells[q->key] != q->count)
             continue;
         if (tree->free_count == 0 && !spent)
             spent = !evict(r, tree, &unused, seen_since, q);
