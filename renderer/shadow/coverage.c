@@ -50,19 +50,6 @@ struct state {
     struct adjacency adjacency; /* with recovery */
 };
 
-/* True: dark. */
-static bool recover(const struct state *s, const struct geometry_map *m, const struct map_point *p,
-                    struct coverage_answer *answer, uint32_t *hint)
-{
-    for (unsigned i = 0; i < answer->besides; i++) {
-        enum geometry_verdict verdict = coverage_recover(m, &s->adjacency, &answer->beside[i], p, hint);
-        if (verdict == GEOMETRY_BEFORE)
-            return true;
-        answer->held |= verdict != GEOMETRY_ELSEWHERE;
-    }
-    return false;
-}
-
 /* Packed lists are as long as their links allow. */
 static unsigned nodes_of(const double *values)
 {
@@ -72,38 +59,101 @@ static unsigned nodes_of(const double *values)
 
 static unsigned pool_of(const double *values) { return values[PARAM_LAYOUT] == LAYOUT_PACKED ? COVERAGE_RING : COVERAGE_POOL; }
 
-/* No ids, so no way over the mesh: what recovery there is, is surrounded(). */
-static bool decide_packed(void *state, const struct geometry_map *m, const struct map_point *p, const double *values,
-                          uint32_t *hint)
+/* Some of a tile's points and what the thread that decides them works with. */
+struct some_points {
+    const struct state *state;
+    const struct geometry_map *map;
+    const struct map_point *points;
+    size_t count;
+    const double *params;
+};
+
+/* Of points that are not known to be dark. */
+static void make_lists(const struct some_points *s, const uint8_t *known, struct coverage_window *w)
 {
-    (void)state;
+    uint32_t wanted[MAP_TILE] = {0}, any = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        const struct map_point *p = &s->points[i];
+        if (known[i] & POINT_DARK || coverage_list(s->map, p->at))
+            continue;
+        wanted[p->at / MAP_TILE % MAP_TILE] |= 1u << p->at % MAP_TILE;
+        any = 1;
+    }
+    if (any)
+        coverage_lists_make(w, wanted, nodes_of(s->params), pool_of(s->params));
+}
+
+/* No ids, so no way over the mesh: what recovery there is, is surrounded(). */
+static bool packed_is_lit(const struct some_points *s, const struct map_point *p, uint32_t *hint)
+{
     uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y;
-    uint32_t links = coverage_list(m, x, y, p->at, nodes_of(values), pool_of(values), hint) & COVERAGE_LINKS;
     bool held = false;
-    for (; links; links &= links - 1) {
+    for (uint32_t links = coverage_list(s->map, p->at) & COVERAGE_LINKS; links; links &= links - 1) {
         const int8_t *step = coverage_pool[__builtin_ctz(links)];
         uint32_t i = x + (uint32_t)step[0], j = y + (uint32_t)step[1];
-        enum geometry_verdict verdict = coverage_packed_ask(m, i, j, geometry_map_at(m, i, j), p, hint);
+        enum geometry_verdict verdict = coverage_packed_ask(s->map, i, j, geometry_map_at(s->map, i, j), p, hint);
         if (verdict == GEOMETRY_BEFORE)
             return false;
         held |= verdict != GEOMETRY_ELSEWHERE;
     }
-    return held || values[PARAM_RECOVERY] == 0 || !surrounded(m, p, hint);
+    return held || s->params[PARAM_RECOVERY] == 0 || !surrounded(s->map, p, hint);
 }
 
-static bool decide(void *state, const struct geometry_map *m, const struct map_point *p, const double *values, uint32_t *hint)
+static void decide_packed(const struct some_points *s, struct coverage_window *w, float *visibility)
 {
-    const struct state *s = state;
-    uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y, ids[COVERAGE_NODES_MAX];
-    /* In every list, and enough for most: without making one. */
-    if (!coverage_list_made(m, p->at) && geometry_ask(m, m->cells[p->at].triangle, p, hint) == GEOMETRY_BEFORE)
-        return false;
-    uint32_t list = coverage_list(m, x, y, p->at, nodes_of(values), pool_of(values), hint);
-    struct coverage_answer answer;
-    coverage_ask(m, ids, coverage_list_triangles(m, x, y, list, ids), p, hint, &answer);
-    if (answer.dark || (values[PARAM_RECOVERY] == 1 && recover(s, m, p, &answer, hint)))
-        return false;
-    return answer.held || !surrounded(m, p, hint);
+    const uint8_t known[ASKS_POINTS] = {0};
+    uint32_t hint = 0;
+    make_lists(s, known, w);
+    for (size_t i = 0; i < s->count; i++)
+        if (!packed_is_lit(s, &s->points[i], &hint))
+            visibility[s->points[i].pixel] = 0;
+}
+
+/* A texel's own triangle is in every list, and enough for most points that are dark: without a list. */
+static void ask_own(const struct some_points *s, struct coverage_asks *a)
+{
+    for (size_t i = 0; i < s->count; i++)
+        coverage_asks_put(a, (uint32_t)i, s->map->cells[s->points[i].at].triangle & MAP_ID);
+    coverage_asks_finish_pairs(a);
+}
+
+/* The lists' triangles; the texel's own was asked. */
+static void ask_lists(const struct some_points *s, const struct coverage_window *w, struct coverage_asks *a)
+{
+    for (size_t i = 0; i < s->count; i++) {
+        uint32_t at = s->points[i].at;
+        if (a->known[i] & POINT_DARK)
+            continue;
+        const uint32_t *id = &w->id[coverage_window_at(at % MAP_TILE, at / MAP_TILE % MAP_TILE)];
+        for (uint32_t links = coverage_list(s->map, at) & COVERAGE_LINKS & ~1u; links; links &= links - 1)
+            coverage_asks_put(a, (uint32_t)i, id[coverage_window_step[__builtin_ctz(links)]]);
+    }
+    coverage_asks_finish(a);
+}
+
+static void decide_exact(const struct some_points *s, struct coverage_window *w, float *visibility)
+{
+    struct coverage_asks a;
+    const struct adjacency *adjacency = s->params[PARAM_RECOVERY] == 1 ? &s->state->adjacency : NULL;
+    coverage_asks_open(&a, s->map, adjacency, s->points, s->count);
+    ask_own(s, &a);
+    make_lists(s, a.known, w);
+    ask_lists(s, w, &a);
+    for (size_t i = 0; i < s->count; i++)
+        if (a.known[i] & POINT_DARK || (!(a.known[i] & POINT_HELD) && surrounded(s->map, &s->points[i], &a.hint)))
+            visibility[s->points[i].pixel] = 0;
+}
+
+static void decide(void *state, const struct geometry_map *m, const struct map_point *points, size_t count, const double *values,
+                   float *visibility)
+{
+    struct coverage_window w;
+    coverage_window_open(&w, m, (uint32_t)points->x, (uint32_t)points->y);
+    for (size_t first = 0; first < count; first += ASKS_POINTS) {
+        size_t some = count - first < ASKS_POINTS ? count - first : ASKS_POINTS;
+        struct some_points s = {state, m, points + first, some, values};
+        (values[PARAM_LAYOUT] == LAYOUT_PACKED ? decide_packed : decide_exact)(&s, &w, visibility);
+    }
 }
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)
@@ -118,7 +168,7 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct state *s = state;
-    return geometry_maps_resolve(&s->maps, in, in->params[PARAM_LAYOUT] == LAYOUT_PACKED ? decide_packed : decide, s, err);
+    return geometry_maps_resolve(&s->maps, in, decide, s, err);
 }
 
 static void finish(void *state)
@@ -134,27 +184,42 @@ static size_t bytes(const void *state)
     return geometry_maps_bytes(&s->maps) + s->adjacency.count * sizeof *s->adjacency.across;
 }
 
+/* Makes the lists of all texels of map i. */
+static void make_all_lists(const struct geometry_map *m, const double *values)
+{
+    struct coverage_window w;
+    for (uint32_t y = 0; y < m->size; y++)
+        for (uint32_t x = 0; x < m->size; x += MAP_TILE) {
+            uint32_t wanted[MAP_TILE] = {0};
+            if (geometry_map_at(m, x, y) == SIZE_MAX)
+                continue;
+            for (uint32_t k = 0; k < MAP_TILE; k++)
+                wanted[y % MAP_TILE] |= geometry_map_triangle(m, (int32_t)(x + k), (int32_t)y) != MAP_NONE ? 1u << k : 0;
+            coverage_window_open(&w, m, x, y);
+            coverage_lists_make(&w, wanted, nodes_of(values), pool_of(values));
+        }
+}
+
 /* Triangles of texel `t` of all maps, 0 where nothing is. */
-static unsigned texel_triangles(struct geometry_maps *g, uint32_t size, size_t t, const double *values,
-                                uint32_t out[COVERAGE_NODES_MAX])
+static unsigned texel_triangles(const struct geometry_maps *g, uint32_t size, size_t t, uint32_t out[COVERAGE_NODES_MAX])
 {
     const struct geometry_map *m = &g->maps[t / size / size];
-    uint32_t x = (uint32_t)(t % size), y = (uint32_t)(t / size % size), hint = 0;
+    uint32_t x = (uint32_t)(t % size), y = (uint32_t)(t / size % size);
     size_t at = geometry_map_at(m, x, y);
-    if (at == SIZE_MAX || m->cells[at].triangle == MAP_NONE)
-        return 0;
-    return coverage_list_triangles(m, x, y, coverage_list(m, x, y, at, nodes_of(values), pool_of(values), &hint), out);
+    return at == SIZE_MAX ? 0 : coverage_list_triangles(m, x, y, coverage_list(m, at), out);
 }
 
 static bool read_lists(void *state, const struct shadow_input *in, struct shadow_lists *out, struct error *err)
 {
-    struct geometry_maps *g = &((struct state *)state)->maps;
+    const struct geometry_maps *g = &((struct state *)state)->maps;
     uint32_t size = g->count ? g->maps[0].size : (uint32_t)in->params[SHADOW_PARAM_SIZE], ids[COVERAGE_NODES_MAX];
     size_t texels = (size_t)g->count * size * size, total = 0;
     *out = (struct shadow_lists){g->count, size, malloc((texels + 1) * sizeof *out->first), NULL};
+    for (unsigned i = 0; i < g->count; i++)
+        make_all_lists(&g->maps[i], in->params);
     for (size_t t = 0; out->first && t < texels; t++) {
         out->first[t] = (uint32_t)total;
-        total += texel_triangles(g, size, t, in->params, ids);
+        total += texel_triangles(g, size, t, ids);
     }
     if (!out->first || !(out->triangles = malloc((total + 1) * sizeof *out->triangles))) {
         free(out->first);
@@ -162,7 +227,7 @@ static bool read_lists(void *state, const struct shadow_input *in, struct shadow
     }
     out->first[texels] = (uint32_t)total;
     for (size_t t = 0; t < texels; t++)
-        texel_triangles(g, size, t, in->params, out->triangles + out->first[t]);
+        texel_triangles(g, size, t, out->triangles + out->first[t]);
     return true;
 }
 

@@ -18,16 +18,45 @@
 enum { COVERAGE_RING = 9, COVERAGE_POOL = 25 };
 extern const int8_t coverage_pool[COVERAGE_POOL][2];
 
-/* A list: bit k links texel coverage_pool[k]; of more than these bits it says that it was made. */
+/* A list, kept in the map's notes: bit k links texel coverage_pool[k]; of more than these bits it says that it was made. */
 #define COVERAGE_LINKS 0x01ffffffu
+#define COVERAGE_MADE  0x80000000u
 
-/* `at` is (x, y)'s index in the map; pool: COVERAGE_RING or COVERAGE_POOL. Makes the list if need be; any thread. */
-uint32_t coverage_list(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at, unsigned nodes, unsigned pool,
-                       uint32_t *hint);
+/* What the texels of a tile keep, and two texels around it. A thread's work space. */
+enum { WINDOW_AROUND = 2, WINDOW_SIDE = MAP_TILE + 2 * WINDOW_AROUND };
+struct coverage_window {
+    const struct geometry_map *map;
+    uint32_t left, top;                     /* of the tile, texels */
+    size_t first;                           /* of its texels, in cells and notes */
+    uint32_t id[WINDOW_SIDE * WINDOW_SIDE]; /* MAP_OFF_EDGE taken off; MAP_NONE */
+};
 
-/* Whether texel `at` has a list already; which texels have depends on the pixels that asked, so nothing that shows may. */
-bool coverage_list_made(const struct geometry_map *m, size_t at);
+/* Texel (x, y) of the tile in the window; link k's is at coverage_window_step[k] from it. */
+static inline size_t coverage_window_at(uint32_t x, uint32_t y)
+{
+    return (size_t)(y + WINDOW_AROUND) * WINDOW_SIDE + x + WINDOW_AROUND;
+}
+extern const int16_t coverage_window_step[COVERAGE_POOL];
 
-/* The triangles of a list: distinct drawn ids, MAP_OFF_EDGE taken off; returns how many. */
+/* Of the tile that holds texel (x, y). */
+void coverage_window_open(struct coverage_window *w, const struct geometry_map *m, uint32_t x, uint32_t y);
+
+/* Makes the lists of the tile's texels whose bit (x % MAP_TILE) of `wanted` (y % MAP_TILE) is set; each keeps a triangle. pool: COVERAGE_RING or
+ * COVERAGE_POOL. Several threads may make the same ones. */
+void coverage_lists_make(struct coverage_window *w, const uint32_t wanted[MAP_TILE], unsigned nodes, unsigned pool);
+
+/* Texel `at`'s list; 0: it has none. Which texels have depends on the pixels that asked, so nothing that shows may. */
+uint32_t coverage_list(const struct geometry_map *m, size_t at);
+
+/* The triangles of a list of texel (x, y): distinct drawn ids, MAP_OFF_EDGE taken off; returns how many. */
 unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,
                                  uint32_t out[COVERAGE_NODES_MAX]);
+
+/* At work: texels whose lists are made together. */
+enum { LISTS_TEXELS = 64 };
+struct coverage_texels {
+    const struct coverage_window *window;
+    unsigned nodes, pool, count;
+    uint16_t texel[LISTS_TEXELS]; /* in the tile */
+    uint32_t lists[LISTS_TEXELS]; /* found */
+};

@@ -1,40 +1,76 @@
 #include "shadow/coverage_recovery.h"
 
 /* Triangles of a texel's size and less: the one looked for is a few edges away. */
-enum { STEPS_MAX = 16 };
+enum { STEPS_MAX = 15 };
 
-/* The edge that the point lies beyond, most so; -1: it lies within. */
-static int edge_towards(const struct light_sides *s)
+/* One edge on. False: the way ends. */
+static bool step(struct coverage_asks *a, struct coverage_way *w)
 {
-    int most = -1;
-    for (int k = 0; k < 3; k++)
-        if (s->edge[k] < 0 && (most < 0 || s->edge[k] < s->edge[most]))
-            most = k;
-    return most;
+    const struct light_mesh *m = &a->map->mesh;
+    const struct light_part *part = light_mesh_part(m, w->triangle, &a->hint);
+    const struct mesh *mesh = &m->scene->meshes[m->scene->instances[part->instance].mesh];
+    uint32_t next = adjacency_of(a->adjacency, mesh, w->triangle - part->first_triangle)[w->beyond];
+    if (next == SCENE_NONE || next + part->first_triangle == w->before)
+        return false;
+    w->before = w->triangle;
+    w->triangle = next + part->first_triangle;
+    if (w->triangle == a->points[w->point].id) {
+        a->known[w->point] |= POINT_HELD;
+        return false;
+    }
+    light_part_prefetch_indices(part, w->triangle);
+    return true;
 }
 
-enum geometry_verdict coverage_recover(const struct geometry_map *m, const struct adjacency *adjacency,
-                                       const struct coverage_way *from, const struct map_point *p, uint32_t *hint)
+/* Where way `w` has come, looked at: `k` of `l`. False: it ends. */
+static bool arrive(struct coverage_asks *a, struct coverage_way *w, const struct map_looks *l, unsigned k)
 {
-    const struct light_part *part = from->part;
-    const struct mesh *mesh = &m->mesh.scene->meshes[m->mesh.scene->instances[part->instance].mesh];
-    struct light_sides s = from->sides;
-    uint32_t before = SCENE_NONE, id = from->id;
-    for (int step = 1; step < STEPS_MAX; step++) {
-        int edge = edge_towards(&s);
-        if (edge < 0)
-            return geometry_ask(m, id, p, hint);
-        uint32_t next = adjacency_of(adjacency, mesh, id - part->first_triangle)[edge];
-        if (next == SCENE_NONE || next + part->first_triangle == before)
-            return GEOMETRY_ELSEWHERE;
-        before = id;
-        id = next + part->first_triangle;
-        if (id == p->id)
-            return GEOMETRY_OWN;
-        double turn = s.area;
-        s = light_triangle_sides(&m->mesh, part, id, p->x, p->y);
-        if (turn * s.area < 0) /* folded over: the point lies beyond an outline */
-            return GEOMETRY_ELSEWHERE;
+    if (w->area * l->area[k] < 0) /* folded over: the point lies beyond an outline */
+        return false;
+    if (l->beyond[k] < 0) {
+        if (l->holds >> k & 1)
+            a->known[w->point] |= l->before >> k & 1 ? POINT_DARK : POINT_HELD;
+        return false;
     }
-    return edge_towards(&s) < 0 ? geometry_ask(m, id, p, hint) : GEOMETRY_ELSEWHERE;
+    w->beyond = l->beyond[k];
+    w->area = l->area[k];
+    return true;
+}
+
+/* Those of `count` ways that lead on move to the front; returns how many. */
+static size_t step_all(struct coverage_asks *a, size_t count)
+{
+    size_t open = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct coverage_way w = a->ways[i];
+        if (!(a->known[w.point] & POINT_DARK) && step(a, &w))
+            a->ways[open++] = w;
+    }
+    return open;
+}
+
+static size_t look_at_all(struct coverage_asks *a, size_t count)
+{
+    size_t open = 0;
+    for (size_t first = 0; first < count; first += LOOKS) {
+        unsigned some = count - first < LOOKS ? (unsigned)(count - first) : LOOKS;
+        struct map_looks l;
+        for (unsigned k = 0; k < some; k++)
+            map_looks_put(&l, k, &a->points[a->ways[first + k].point], a->ways[first + k].triangle);
+        map_look(a->map, &l, some, &a->hint);
+        for (unsigned k = 0; k < some; k++) {
+            struct coverage_way w = a->ways[first + k];
+            if (arrive(a, &w, &l, k))
+                a->ways[open++] = w;
+        }
+    }
+    return open;
+}
+
+void coverage_recover(struct coverage_asks *a)
+{
+    size_t count = a->adjacency ? a->way_count : 0;
+    for (int steps = 0; count > 0 && steps < STEPS_MAX; steps++)
+        count = look_at_all(a, step_all(a, count));
+    a->way_count = 0;
 }

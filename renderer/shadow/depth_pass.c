@@ -22,7 +22,7 @@ size_t depth_job_count(const struct depth_job *job)
     return job->top < job->bottom ? (job->bottom - job->top + DEPTH_ROWS - 1) / DEPTH_ROWS : 0;
 }
 
-static struct depth_map place_map(const struct view *v, struct dvec3 camera_eye)
+struct depth_map depth_map_of(const struct view *v, struct dvec3 camera_eye)
 {
     const struct dvec3 axes[3] = {v->right, v->up, v->forward};
     double sx = v->width / (v->right_edge - v->left), sy = v->height / (v->top - v->bottom);
@@ -63,7 +63,7 @@ bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const 
     job->bias = (float)in->params[SHADOW_PARAM_BIAS];
     job->slope = (float)in->params[SHADOW_PARAM_SLOPE];
     for (unsigned i = 0; i < maps->fit.map_count; i++)
-        job->maps[i] = place_map(&maps->fit.maps[i], in->view->eye);
+        job->maps[i] = depth_map_of(&maps->fit.maps[i], in->view->eye);
     job->orthographic = maps->fit.maps[0].orthographic;
     job->side = (int32_t)maps->fit.maps[0].width;
     return true;

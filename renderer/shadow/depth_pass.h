@@ -82,6 +82,9 @@ bool depth_job_begin(struct depth_job *job, const struct shadow_input *in, struc
 /* All but filter, square and umbra, for a system with SHADOW_BIAS_PARAMS whose maps were prepared with in->resolve_on_cpu. */
 bool depth_job_init(struct depth_job *job, const struct light_maps *maps, const struct shadow_input *in, struct error *err);
 
+/* A map, as seen from the camera's eye. */
+struct depth_map depth_map_of(const struct view *map, struct dvec3 camera_eye);
+
 /* A square of `side` texels, all alike. */
 void depth_square_flat(struct depth_square *square, int side);
 

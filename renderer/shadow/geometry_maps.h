@@ -9,25 +9,19 @@
 #include <stdint.h>
 
 #include "shadow/geometry_map.h"
+#include "shadow/geometry_points.h"
 #include "shadow/shadow.h"
-
-struct pixel;
 
 struct geometry_maps {
     struct geometry_map maps[SHADOW_MAPS_MAX];
     unsigned count;
+    struct geometry_points points; /* of the picture at hand */
 };
 
-/* A receiver on a map. */
-struct map_point {
-    float x, y, n; /* as in light_mesh.h */
-    uint32_t id;   /* its triangle, drawn id */
-    size_t at;     /* its texel, in cells and notes */
-};
-
-/* True: lit. Called for points that are not known to be lit by the texel's nearest depth. `state`: the system's; `hint`: a thread's own. */
-typedef bool geometry_decide(void *state, const struct geometry_map *m, const struct map_point *p, const double *params,
-                             uint32_t *hint);
+/* Sets the visibility of points of one tile that are dark to 0. They are those that their texels' nearest depths do not tell to be lit. On several
+ * threads, each tile on one unless it holds very many. `state`: the system's. */
+typedef void geometry_decide(void *state, const struct geometry_map *m, const struct map_point *points, size_t count,
+                             const double *params, float *visibility);
 
 bool geometry_maps_prepare(struct geometry_maps *g, const struct shadow_input *in, struct error *err);
 bool geometry_maps_resolve(struct geometry_maps *g, const struct shadow_input *in, geometry_decide *decide, void *state,
@@ -48,11 +42,4 @@ enum geometry_verdict {
     GEOMETRY_OWN,       /* is the point's own triangle */
     GEOMETRY_BEFORE,    /* shadows it */
 };
-/* Whether any corner of triangle `id` lies before the point: if none does, nothing of it can. */
-static inline bool geometry_may_shadow(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint)
-{
-    struct light_triangle t = light_part_triangle(light_mesh_part(&m->mesh, id, hint), id);
-    return light_triangle_wild(&t) || geometry_before(m, t.corner[0]->n, p->n) || geometry_before(m, t.corner[1]->n, p->n) ||
-           geometry_before(m, t.corner[2]->n, p->n);
-}
 enum geometry_verdict geometry_ask(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint);

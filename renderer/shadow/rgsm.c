@@ -30,10 +30,8 @@ static float wild_plane_at(const struct light_mesh *m, const struct light_part *
     return isfinite(n) ? (float)n : 0;
 }
 
-static bool decide(void *state, const struct geometry_map *m, const struct map_point *p, const double *values, uint32_t *hint)
+static bool is_lit(const struct geometry_map *m, const struct map_point *p, uint32_t *hint)
 {
-    (void)state;
-    (void)values;
     uint32_t id = m->cells[p->at].triangle;
     if (id & MAP_OFF_EDGE || id == p->id)
         return true;
@@ -41,6 +39,17 @@ static bool decide(void *state, const struct geometry_map *m, const struct map_p
     struct light_triangle t = light_part_triangle(part, id);
     float plane = light_triangle_wild(&t) ? wild_plane_at(&m->mesh, part, id, p->x, p->y) : plane_at(&t, p->x, p->y);
     return !geometry_before(m, plane, p->n);
+}
+
+static void decide(void *state, const struct geometry_map *m, const struct map_point *points, size_t count, const double *values,
+                   float *visibility)
+{
+    (void)state;
+    (void)values;
+    uint32_t hint = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!is_lit(m, &points[i], &hint))
+            visibility[points[i].pixel] = 0;
 }
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)

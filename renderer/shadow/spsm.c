@@ -7,10 +7,8 @@
 
 static const struct param_desc params[] = {SHADOW_MAP_PARAMS};
 
-static bool decide(void *state, const struct geometry_map *m, const struct map_point *p, const double *values, uint32_t *hint)
+static bool is_lit(const struct geometry_map *m, const struct map_point *p, uint32_t *hint)
 {
-    (void)state;
-    (void)values;
     uint32_t own = m->cells[p->at].triangle;
     enum geometry_verdict verdict = geometry_ask(m, own, p, hint);
     if (verdict == GEOMETRY_BEFORE)
@@ -28,6 +26,17 @@ static bool decide(void *state, const struct geometry_map *m, const struct map_p
             held |= verdict != GEOMETRY_ELSEWHERE;
         }
     return held || !surrounded(m, p, hint);
+}
+
+static void decide(void *state, const struct geometry_map *m, const struct map_point *points, size_t count, const double *values,
+                   float *visibility)
+{
+    (void)state;
+    (void)values;
+    uint32_t hint = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!is_lit(m, &points[i], &hint))
+            visibility[points[i].pixel] = 0;
 }
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)

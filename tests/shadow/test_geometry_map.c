@@ -16,6 +16,8 @@
 #include "shadow/coverage_packed.h"
 #include "shadow/coverage_recovery.h"
 #include "shadow/fit.h"
+#include "shadow/geometry_kernel.h"
+#include "shadow/geometry_maps.h"
 
 #define SIZE 96
 
@@ -194,15 +196,34 @@ static void test_the_same_whatever_the_threads(void **state)
     scene_destroy(scene);
 }
 
+static bool keeps(const struct geometry_map *m, uint32_t x, uint32_t y)
+{
+    size_t at = geometry_map_at(m, x, y);
+    return at != SIZE_MAX && m->cells[at].triangle != MAP_NONE;
+}
+
+/* Texels [x, end) of row y, of one tile. */
+static void make_row(const struct geometry_map *m, uint32_t x, uint32_t end, uint32_t y, unsigned nodes)
+{
+    struct coverage_window w;
+    uint32_t wanted[MAP_TILE] = {0};
+    for (; x < end; x++)
+        wanted[y % MAP_TILE] |= keeps(m, x, y) ? 1u << x % MAP_TILE : 0;
+    if (!wanted[y % MAP_TILE])
+        return;
+    coverage_window_open(&w, m, end - 1, y);
+    coverage_lists_make(&w, wanted, nodes, COVERAGE_POOL);
+}
+
 /* Lists of all texels in turn. */
 static size_t list_all(const struct geometry_map *m, unsigned nodes, uint32_t *out)
 {
-    uint32_t hint = 0;
     size_t links = 0;
     for (uint32_t t = 0; t < SIZE * SIZE; t++) {
-        size_t at = geometry_map_at(m, t % SIZE, t / SIZE);
-        bool any = at != SIZE_MAX && m->cells[at].triangle != MAP_NONE;
-        out[t] = any ? coverage_list(m, t % SIZE, t / SIZE, at, nodes, COVERAGE_POOL, &hint) & COVERAGE_LINKS : 0;
+        if (t % MAP_TILE == 0)
+            make_row(m, t % SIZE, t % SIZE + MAP_TILE, t / SIZE, nodes);
+        bool any = keeps(m, t % SIZE, t / SIZE);
+        out[t] = any ? coverage_list(m, geometry_map_at(m, t % SIZE, t / SIZE)) & COVERAGE_LINKS : 0;
         assert_true(!any || out[t] & 1);
         assert_true((unsigned)__builtin_popcount(out[t]) <= nodes);
         links += (size_t)__builtin_popcount(out[t]);
@@ -218,7 +239,7 @@ static void test_lists_are_the_same_in_any_order(void **state)
     struct light light = light_at(LIGHT_POINT, 2, 4, 1.5);
     struct setting s = setting_open(scene, &light, 2, false);
     struct geometry_map full = {0}, some = {0};
-    uint32_t hint = 0, asked = 0;
+    uint32_t asked = 0;
     uint32_t *a = calloc(SIZE * SIZE, sizeof *a), *b = calloc(SIZE * SIZE, sizeof *b);
     assert_true(a && b);
     build(&full, &s, 0);
@@ -226,11 +247,11 @@ static void test_lists_are_the_same_in_any_order(void **state)
     assert_true(list_all(&full, 4, a) > 4000);
     for (int i = 0; i < 3000; i++) {
         uint32_t x = (uint32_t)rand() % SIZE, y = (uint32_t)rand() % SIZE;
-        size_t at = geometry_map_at(&some, x, y);
-        if (at == SIZE_MAX || some.cells[at].triangle == MAP_NONE)
+        if (!keeps(&some, x, y))
             continue;
         asked++;
-        assert_int_equal(coverage_list(&some, x, y, at, 4, COVERAGE_POOL, &hint) & COVERAGE_LINKS, a[y * SIZE + x]);
+        make_row(&some, x, x + 1, y, 4);
+        assert_int_equal(coverage_list(&some, geometry_map_at(&some, x, y)) & COVERAGE_LINKS, a[y * SIZE + x]);
     }
     assert_true(asked > 500);
     list_all(&some, 4, b);
@@ -245,13 +266,18 @@ static void test_lists_are_the_same_in_any_order(void **state)
     scene_destroy(scene);
 }
 
-static enum geometry_verdict recover(const struct geometry_map *m, const struct adjacency *adjacency, uint32_t id,
-                                     const struct map_point *p)
+/* What is known after a way to the point from triangle `id`. */
+static unsigned recover(const struct geometry_map *m, const struct adjacency *adjacency, uint32_t id, const struct map_point *p)
 {
     uint32_t hint = 0;
-    struct coverage_way from = {.part = light_mesh_part(&m->mesh, id, &hint), .id = id};
-    from.sides = light_triangle_sides(&m->mesh, from.part, id, p->x, p->y);
-    return coverage_recover(m, adjacency, &from, p, &hint);
+    struct map_looks l;
+    struct coverage_asks a;
+    coverage_asks_open(&a, m, adjacency, p, 1);
+    map_looks_put(&l, 0, p, id);
+    map_look(m, &l, 1, &hint);
+    a.ways[a.way_count++] = (struct coverage_way){0, id, SCENE_NONE, l.beyond[0], l.area[0]};
+    coverage_recover(&a);
+    return a.known[0];
 }
 
 /* From any triangle of a sheet, recovery walks to the one over the point. */
@@ -284,44 +310,47 @@ static void test_recovery_finds_what_no_texel_kept(void **state)
         p.x += t.corner[k]->x / 3;
         p.y += t.corner[k]->y / 3;
     }
-    assert_int_equal(recover(&m, &adjacency, 20, &p), GEOMETRY_BEFORE);
-    assert_int_equal(recover(&m, &adjacency, 4, &p), GEOMETRY_BEFORE);
-    assert_int_equal(recover(&m, &adjacency, 128, &p), GEOMETRY_ELSEWHERE);
+    assert_int_equal(recover(&m, &adjacency, 28, &p), POINT_DARK);
+    assert_int_equal(recover(&m, &adjacency, 4, &p), POINT_DARK);
+    assert_int_equal(recover(&m, &adjacency, 128, &p), 0);
     p.id = 20;
-    assert_int_equal(recover(&m, &adjacency, 4, &p), GEOMETRY_OWN);
+    assert_int_equal(recover(&m, &adjacency, 4, &p), POINT_HELD);
     adjacency_finish(&adjacency);
     geometry_map_finish(&m);
     setting_close(&s);
     scene_destroy(scene);
 }
 
-/* coverage_ask() one by one. */
-static struct coverage_answer ask_singly(const struct geometry_map *m, const uint32_t *ids, unsigned count,
-                                         const struct map_point *p)
+/* What the triangles say one by one: known, and how many ways begin. */
+static unsigned ask_singly(const struct geometry_map *m, const uint32_t *ids, unsigned count, const struct map_point *p,
+                           size_t *ways)
 {
-    struct coverage_answer out = {0};
+    unsigned known = 0;
     uint32_t hint = 0;
+    *ways = 0;
     for (unsigned i = 0; i < count; i++) {
-        out.held |= ids[i] == p->id;
-        if (ids[i] == p->id || !geometry_may_shadow(m, ids[i], p, &hint))
-            continue;
         enum geometry_verdict verdict = geometry_ask(m, ids[i], p, &hint);
-        if (verdict == GEOMETRY_BEFORE)
-            return (struct coverage_answer){.dark = true};
-        if (verdict == GEOMETRY_ELSEWHERE)
-            out.beside[out.besides++].id = ids[i];
-        else
-            out.held = true;
+        struct light_triangle t = light_part_triangle(light_mesh_part(&m->mesh, ids[i], &hint), ids[i]);
+        struct light_sides s = light_triangle_sides(&m->mesh, light_mesh_part(&m->mesh, ids[i], &hint), ids[i], p->x, p->y);
+        bool may = light_triangle_wild(&t);
+        for (int k = 0; k < 3; k++)
+            may |= geometry_before(m, t.corner[k]->n, p->n);
+        if (verdict == GEOMETRY_OWN || (may && verdict == GEOMETRY_BEHIND))
+            known |= POINT_HELD;
+        else if (verdict == GEOMETRY_BEFORE)
+            known |= POINT_DARK;
+        else if (may && verdict == GEOMETRY_ELSEWHERE && (s.edge[0] < 0 || s.edge[1] < 0 || s.edge[2] < 0))
+            ++*ways;
     }
-    return out;
+    return known;
 }
 
-/* Triangles four at a time say what each of them says: some behind the light, some with holes beside them, lists of any length. */
+/* Triangles eight at a time say what each of them says: some behind the light, some with holes beside them, lists of any length. */
 static void test_asked_together_as_one_by_one(void **state)
 {
     (void)state;
     static const char *const scenes[] = {"builtin:dragon:triangles=2000", "builtin:tree", "builtin:hard-11-degenerate"};
-    unsigned dark = 0, beside = 0, held = 0;
+    size_t dark = 0, beside = 0, held = 0, ways;
     srand(11);
     for (size_t k = 0; k < 3; k++) {
         struct scene *scene = load(scenes[k]);
@@ -330,32 +359,74 @@ static void test_asked_together_as_one_by_one(void **state)
         struct geometry_map m = {0};
         build(&m, &s, 0);
         for (int i = 0; i < 20000; i++) {
-            uint32_t ids[COVERAGE_NODES_MAX], hint = 0;
+            uint32_t ids[COVERAGE_NODES_MAX];
             unsigned count = 1 + (unsigned)rand() % COVERAGE_NODES_MAX;
             const struct light_part *part = &m.mesh.parts[(size_t)rand() % m.mesh.part_count];
             for (unsigned n = 0; n < count; n++)
                 ids[n] = part->first_triangle + (uint32_t)rand() % part->triangle_count;
             const struct light_vertex *at = light_part_triangle(part, ids[0]).corner[rand() % 3];
-            struct map_point p = {at->x + (float)(rand() % 64) / 64, at->y, at->n * (0.5f + (float)(rand() % 64) / 64),
-                                  rand() % 2 ? ids[count - 1] : MAP_NONE, 0};
-            struct coverage_answer got, wanted = ask_singly(&m, ids, count, &p);
-            coverage_ask(&m, ids, count, &p, &hint, &got);
-            assert_int_equal(got.dark, wanted.dark);
-            dark += got.dark;
-            if (got.dark)
-                continue;
-            assert_int_equal(got.held, wanted.held);
-            assert_int_equal(got.besides, wanted.besides);
-            for (unsigned n = 0; n < got.besides; n++)
-                assert_int_equal(got.beside[n].id, wanted.beside[n].id);
-            beside += got.besides;
-            held += got.held;
+            struct map_point p = {.x = at->x + (float)(rand() % 64) / 64,
+                                  .y = at->y,
+                                  .n = at->n * (0.5f + (float)(rand() % 64) / 64),
+                                  .id = rand() % 2 ? ids[count - 1] : MAP_NONE};
+            struct coverage_asks a;
+            coverage_asks_open(&a, &m, NULL, &p, 1);
+            for (unsigned n = 0; n < count; n++)
+                coverage_asks_put(&a, 0, ids[n]);
+            coverage_asks_finish_pairs(&a);
+            assert_int_equal(a.known[0], ask_singly(&m, ids, count, &p, &ways));
+            assert_int_equal(a.way_count, ways);
+            dark += a.known[0] & POINT_DARK;
+            held += a.known[0] & POINT_HELD ? 1 : 0;
+            beside += ways;
         }
         geometry_map_finish(&m);
         setting_close(&s);
         scene_destroy(scene);
     }
     assert_true(dark > 100 && beside > 100 && held > 100);
+}
+
+/* Looks and lists of the machine's best instructions against the plain ones. */
+static void test_every_kernel_gives_the_same_bits(void **state)
+{
+    (void)state;
+    if (geometry_kernel_choose() == &geometry_plain)
+        skip();
+    struct scene *scene = load("builtin:dragon:triangles=20000");
+    struct light light = light_at(LIGHT_POINT, 2, 4, 1.5);
+    struct setting s = setting_open(scene, &light, 1, false);
+    struct geometry_map m = {0};
+    build(&m, &s, 0);
+    uint32_t hint = 0, lists = 0;
+    for (uint32_t t = 0; t < SIZE * SIZE; t++) {
+        uint32_t x = t % SIZE, y = t / SIZE, texel = y % MAP_TILE * MAP_TILE + x % MAP_TILE;
+        if (!keeps(&m, x, y))
+            continue;
+        struct coverage_window w;
+        coverage_window_open(&w, &m, x, y);
+        struct coverage_texels plain = {.window = &w, .nodes = 4, .pool = COVERAGE_POOL, .count = 1, .texel = {(uint16_t)texel}};
+        struct coverage_texels best = plain;
+        geometry_plain.make_lists(&plain);
+        geometry_kernel_choose()->make_lists(&best);
+        assert_int_equal(plain.lists[0], best.lists[0]);
+        lists += plain.lists[0] != (COVERAGE_MADE | 1);
+        struct map_looks a, b;
+        memset(&a, 0, sizeof a);
+        for (unsigned k = 0; k < LOOKS; k++) {
+            struct map_point p = {
+                .x = (float)x + (float)k / LOOKS, .y = (float)y + 0.3f, .n = m.cells[geometry_map_at(&m, x, y)].nearest};
+            map_looks_put(&a, k, &p, m.cells[geometry_map_at(&m, x, y)].triangle & MAP_ID);
+        }
+        b = a;
+        geometry_plain.look(&m, &a, &hint);
+        geometry_kernel_choose()->look(&m, &b, &hint);
+        assert_memory_equal(&a, &b, sizeof a);
+    }
+    assert_true(lists > 1000);
+    geometry_map_finish(&m);
+    setting_close(&s);
+    scene_destroy(scene);
 }
 
 static void test_packed_numbers(void **state)
@@ -375,13 +446,10 @@ static void test_packed_numbers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_is_nearer_than_a_texel_says),
-        cmocka_unit_test(test_corners_behind_the_light),
-        cmocka_unit_test(test_the_same_whatever_the_threads),
-        cmocka_unit_test(test_lists_are_the_same_in_any_order),
-        cmocka_unit_test(test_recovery_finds_what_no_texel_kept),
-        cmocka_unit_test(test_asked_together_as_one_by_one),
-        cmocka_unit_test(test_packed_numbers),
+        cmocka_unit_test(test_nothing_is_nearer_than_a_texel_says), cmocka_unit_test(test_corners_behind_the_light),
+        cmocka_unit_test(test_the_same_whatever_the_threads),       cmocka_unit_test(test_lists_are_the_same_in_any_order),
+        cmocka_unit_test(test_recovery_finds_what_no_texel_kept),   cmocka_unit_test(test_asked_together_as_one_by_one),
+        cmocka_unit_test(test_every_kernel_gives_the_same_bits),    cmocka_unit_test(test_packed_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

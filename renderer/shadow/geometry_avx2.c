@@ -1,0 +1,10 @@
+#include "shadow/geometry_kernel.h"
+#include "shadow/lists_lanes.h"
+#include "shadow/looks_lanes.h"
+#include "shadow/points_lanes.h"
+
+#ifdef __AVX2__
+const struct geometry_kernel geometry_avx2 = {find_points, look_at_eight, make_lists};
+#else
+const struct geometry_kernel geometry_avx2 = {0};
+#endif
