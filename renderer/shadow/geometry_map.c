@@ -260,8 +260,8 @@ static void fill_tile(void *context, size_t tile, unsigned worker)
         return;
     /* After the second sweep a chunk's start is where the next one's entries begin; the first one's is the end of the tile before. */
     const uint32_t *last = m->counts + (CHUNKS - 1) * (size_t)m->tiles * m->tiles * BINS;
-    uint32_t first = tile == 0 ? 0 : last[tile * BINS - 1], end = last[tile * BINS + BINS - 1];
-    map_tile_choose()(m, (uint32_t)(tile % m->tiles), (uint32_t)(tile / m->tiles), m->entries + first, end - first,
+    uint32_t first = tile == 0 ? 0 : last[tile * BINS - 1], front = last[tile * BINS], end = last[tile * BINS + 1];
+    map_tile_choose()(m, (uint32_t)(tile % m->tiles), (uint32_t)(tile / m->tiles), m->entries + first, front - first, end - first,
                       m->cells + (size_t)m->slot[tile] * MAP_TILE * MAP_TILE);
 }
 

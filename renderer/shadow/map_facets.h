@@ -8,16 +8,21 @@
 #define RANK_STEPS 8.0f /* a texel */
 
 struct map_facets {
-    struct light_lanes at;        /* corners, texels from the tile's */
-    lanes_float a[3], b[3], c[3]; /* of edge k at texel (x, y)'s centre: a x + b y + c >= 0 inside */
-    lanes_float reach[3];         /* touched: >= -reach (conservative.h) */
-    lanes_float inverse[3];       /* RANK_STEPS / length of each edge */
-    lanes_float n, nx, ny;        /* nearness at texel (x, y)'s centre: n + nx x + ny y */
-    lanes_float most, slack;      /* the nearest corner's; by how much a texel may exceed its centre */
-    lanes_float behind;           /* in (0, 1): more for farther from the light */
-    lanes_int x0, y0, x1, y1;     /* texels of its bounding box, clipped to the tile; inclusive */
-    lanes_int over;               /* all bits: it touches the tile's square at all */
-    lanes_int thin;               /* all bits: may have no area */
+    struct light_lanes at;                /* corners, texels from the tile's */
+    lanes_float a[3], b[3], c[3];         /* of edge k at texel (x, y)'s centre: a x + b y + c >= 0 inside */
+    lanes_float least[3];                 /* touched: at least this (conservative.h's -reach) */
+    lanes_float inverse[3];               /* RANK_STEPS / length of each edge */
+    lanes_float n, nx, ny;                /* nearness at texel (x, y)'s centre: n + nx x + ny y */
+    lanes_float most, slack;              /* the nearest corner's; by how much a texel may exceed its centre */
+    lanes_float behind;                   /* in (0, 1): more for farther from the light */
+    lanes_int x0, y0, x1, y1;             /* texels of its bounding box, clipped to the tile; inclusive */
+    lanes_float left, top, right, bottom; /* the same */
+    lanes_int over;                       /* all bits: it touches the tile's square at all */
+    lanes_int thin;                       /* all bits: may have no area */
+    lanes_int wide;                       /* all bits: eight texels or more, along either axis */
+    /* Of wide ones: edge k crosses row y at at_row + step y; what lies farther left than `before` beyond that is outside, or farther right than
+     * `after`. */
+    lanes_float at_row[3], step[3], before[3], after[3];
 };
 
 /* Corners, box, nearest corner: enough to tell whether a triangle is hidden. */
@@ -53,7 +58,7 @@ static inline __attribute__((always_inline)) void map_facets_set(struct map_face
         f->a[k] = (lanes_float)((lanes_int)(y[k] - y[j]) ^ turn);
         f->b[k] = (lanes_float)((lanes_int)(x[j] - x[k]) ^ turn);
         f->c[k] = f->a[k] * (0.5f - x[k]) + f->b[k] * (0.5f - y[k]);
-        f->reach[k] = (0.5f + m) * (LANES_ABS(f->a[k]) + LANES_ABS(f->b[k]));
+        f->least[k] = -(0.5f + m) * (LANES_ABS(f->a[k]) + LANES_ABS(f->b[k]));
         lanes_float length = f->a[k] * f->a[k] + f->b[k] * f->b[k] + 1e-30f;
         LANES_ROOT(length);
         f->inverse[k] = RANK_STEPS / length;
@@ -75,5 +80,25 @@ static inline __attribute__((always_inline)) void map_facets_set(struct map_face
     f->ny = LANES_IF(flat, none, f->ny);
     f->slack = LANES_IF(flat, none, f->slack);
     f->n = LANES_IF(flat, f->most, f->n);
+    f->wide = (f->x1 - f->x0 >= 8) | (f->y1 - f->y0 >= 8);
+    f->left = __builtin_convertvector(f->x0, lanes_float);
+    f->top = __builtin_convertvector(f->y0, lanes_float);
+    f->right = __builtin_convertvector(f->x1, lanes_float);
+    f->bottom = __builtin_convertvector(f->y1, lanes_float);
     f->behind = nearest / (nearest + (n[0] + n[1] + n[2]) * (1.0f / 3));
+}
+
+/* What of a row the edges leave, a little more than less: most of a long thin triangle's box is empty. */
+static inline __attribute__((always_inline)) void map_facets_spans(struct map_facets *f)
+{
+    for (int k = 0; k < 3; k++) {
+        lanes_float inverse = 1 / f->a[k], at = (f->least[k] - f->c[k]) * inverse, step = -f->b[k] * inverse;
+        /* Steep enough that roundings of the crossing, and of the edge there, are less than 1/16 texel. */
+        lanes_int sure = (LANES_ABS(at) < 1e5f) & (LANES_ABS(step) < 1e3f);
+        lanes_float far = LANES_ALL(INFINITY), none = {};
+        f->before[k] = LANES_IF(sure & (f->a[k] > 0), none - 0.125f, -far);
+        f->after[k] = LANES_IF(sure & (f->a[k] < 0), none + 0.125f, far);
+        f->at_row[k] = LANES_IF(sure, at, none);
+        f->step[k] = LANES_IF(sure, step, none);
+    }
 }

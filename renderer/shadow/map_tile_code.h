@@ -1,24 +1,22 @@
-/* How a tile is rasterized. Included by the kernels only (map_tile_plain.c, map_tile_avx2.c): the same arithmetic, so the same bits. */
+/* How a tile is rasterized. Included by the kernels only (map_tile_plain.c, map_tile_avx2.c, map_tile_avx512.c): the same arithmetic, so the same bits. */
 #pragma once
 
-#include "shadow/map_tile.h"
+#include "shadow/map_block.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "shadow/map_facets.h"
 
-#define INLINE static inline __attribute__((always_inline))
-
-enum { TEXELS = MAP_TILE * MAP_TILE };
-
 #define HOLE_AWAY 0.5f /* texels: covers the centre, with a hole there */
 #define WILD_AWAY 1.0f /* texels: triangles whose distance nobody works out */
 
-/* A row more than the tile has: two are worked on at a time. */
+enum { SQUARE = 4, SQUARES = TEXELS / (SQUARE * SQUARE) };
+
 struct work {
-    float nearest[TEXELS + MAP_TILE], rank[TEXELS + MAP_TILE];
-    uint32_t id[TEXELS + MAP_TILE];
+    float nearest[TEXELS], rank[TEXELS];
+    uint32_t id[TEXELS];
+    float last[SQUARES]; /* of a square of texels, the rank that is last */
 } __attribute__((aligned(64)));
 
 /* One of eight, and where it goes. */
@@ -32,175 +30,135 @@ struct mark {
     struct work *work;
 };
 
-/* Takes texels whose centre lies in a hole out of `covered`; lane i's is (x[i], y[i]). */
-static void refuse_holes(const struct mark *k, const float *x, const float *y, int32_t *covered)
+/* Those of a block's texels whose centre does not lie in a hole. */
+static unsigned refuse_holes(const struct mark *k, uint32_t x, uint32_t y, unsigned covered)
 {
+    unsigned solid = covered;
     struct light_hit hit;
-    for (int i = 0; i < CONSERVATIVE_LANES; i++)
-        if (covered[i] &&
-            !light_triangle_solid_hit(&k->map->mesh, k->holes, k->id, k->left + x[i] + 0.5f, k->top + y[i] + 0.5f, &hit))
-            covered[i] = 0;
+    for (; covered; covered &= covered - 1) {
+        unsigned i = (unsigned)__builtin_ctz(covered);
+        float px = k->left + (float)(x + i % BLOCK_COLUMNS) + 0.5f, py = k->top + (float)(y + i / BLOCK_COLUMNS) + 0.5f;
+        if (!light_triangle_solid_hit(&k->map->mesh, k->holes, k->id, px, py, &hit))
+            solid &= ~(1u << i);
+    }
+    return solid;
 }
 
-/* Eight texels: where they are, which of them matter, what the work says of them. */
-struct texels {
-    lanes_float x, y;
-    lanes_int among;
-    lanes_float nearest, rank;
-    lanes_uint id;
-};
+/* Which texels lie in the triangle's box. */
+INLINE block_mask within_box(const struct map_facets *f, int lane, block_float x, block_float y)
+{
+    return block_at_least(x, block_all(f->left[lane])) & block_at_least(block_all(f->right[lane]), x) &
+           block_at_least(y, block_all(f->top[lane])) & block_at_least(block_all(f->bottom[lane]), y);
+}
 
-INLINE void mark_texels(const struct mark *k, struct texels *t)
+INLINE void mark_block(const struct mark *k, uint32_t block)
 {
     const struct map_facets *f = k->facets;
-    int lane = k->lane;
-    lanes_float edge[3], away = {};
-    lanes_int touched = t->among, covered = ~(lanes_int){};
+    const int lane = k->lane;
+    const uint32_t left = block % 8 * BLOCK_COLUMNS, top = block / 8 * BLOCK_ROWS;
+    block_float *nearest = (block_float *)k->work->nearest + block, *ranks = (block_float *)k->work->rank + block;
+    block_uint *ids = (block_uint *)k->work->id + block;
+    const block_float x = block_columns() + (float)left, y = block_rows() + (float)top;
+    block_float inmost = {}, away = {};
+    block_mask touched = within_box(f, lane, x, y);
+#pragma GCC unroll 3
     for (int e = 0; e < 3; e++) {
-        edge[e] = f->a[e][lane] * t->x + (f->b[e][lane] * t->y + f->c[e][lane]);
-        touched &= edge[e] >= -f->reach[e][lane];
-        covered &= edge[e] >= 0;
-        lanes_float beyond = -edge[e] * f->inverse[e][lane];
-        away = e == 0 ? beyond : LANES_MAX(away, beyond);
+        block_float edge = f->a[e][lane] * x + (f->b[e][lane] * y + f->c[e][lane]), distance = edge * f->inverse[e][lane];
+        touched &= block_at_least(edge, block_all(f->least[e][lane]));
+        inmost = e == 0 ? edge : block_min(inmost, edge);
+        away = e == 0 ? distance : block_min(away, distance);
     }
+    away = f->behind[lane] - __builtin_convertvector(__builtin_convertvector(away, block_int), block_float);
+    block_mask covered = block_at_least(inmost, block_all(0));
     if (k->holes) {
-        lanes_int before = covered & touched;
-        covered = before;
-        refuse_holes(k, (const float *)&t->x, (const float *)&t->y, (int32_t *)&covered);
-        away = LANES_IF(before & ~covered, LANES_ALL(HOLE_AWAY * RANK_STEPS), away);
+        unsigned centers = block_bits(covered & touched), solid = refuse_holes(k, left, top, centers);
+        covered = block_of_bits(solid);
+        away = block_pick(block_of_bits(centers & ~solid), block_all(HOLE_AWAY * RANK_STEPS + f->behind[lane]), away);
     }
-    lanes_float n = f->nx[lane] * t->x + (f->ny[lane] * t->y + f->n[lane]);
-    lanes_float near = n + f->slack[lane], most = LANES_ALL(f->most[lane]);
-    away = __builtin_convertvector(__builtin_convertvector(away, lanes_int), lanes_float) + f->behind[lane];
-    lanes_float rank = LANES_IF(covered, -n, away);
-    near = LANES_MIN(near, most);
-    t->nearest = LANES_IF(touched & (near > t->nearest), near, t->nearest);
-    lanes_int better = touched & (rank < t->rank);
-    t->rank = LANES_IF(better, rank, t->rank);
-    t->id = (lanes_uint)LANES_IF(better, (lanes_float)((lanes_uint){} + k->id), (lanes_float)t->id);
+    block_float n = f->nx[lane] * x + (f->ny[lane] * y + f->n[lane]);
+    block_float near = block_min(n + f->slack[lane], block_all(f->most[lane])), rank = block_pick(covered, -n, away);
+    *nearest = block_pick(touched & block_above(near, *nearest), near, *nearest);
+    block_mask better = touched & block_above(*ranks, rank);
+    *ranks = block_pick(better, rank, *ranks);
+    *ids = (block_uint)block_pick(better, (block_float)((block_uint){} + k->id), (block_float)*ids);
 }
 
-/* Eight texels of row y from column x on, a multiple of eight. */
-INLINE void mark_row(const struct mark *k, int32_t x, int32_t y)
+/* Of eight rows of eight, a bit each. */
+INLINE uint64_t bits_between(int32_t x0, int32_t x1, int32_t y0, int32_t y1)
 {
-    const struct map_facets *f = k->facets;
-    lanes_float columns = LANES_COUNT + (float)x;
-    size_t at = (size_t)y * MAP_TILE + (size_t)x;
-    lanes_float *nearest = (lanes_float *)&k->work->nearest[at], *ranks = (lanes_float *)&k->work->rank[at];
-    lanes_uint *ids = (lanes_uint *)&k->work->id[at];
-    lanes_int among = (columns >= (float)f->x0[k->lane]) & (columns <= (float)f->x1[k->lane]);
-    struct texels t = {columns, LANES_ALL((float)y), among, *nearest, *ranks, *ids};
-    mark_texels(k, &t);
-    *nearest = t.nearest;
-    *ranks = t.rank;
-    *ids = t.id;
+    uint64_t row = (2u << x1) - (1u << x0), rows = (UINT64_MAX << 8 * y0) & (UINT64_MAX >> (56 - 8 * y1));
+    return row * (rows & 0x0101010101010101u);
 }
 
-typedef float quarter_loose __attribute__((vector_size(16), aligned(4), may_alias));
+typedef uint8_t row_bits __attribute__((vector_size(8)));
 
-#define TWO_ROWS(array, at) LANES_OF(*(const quarter_loose *)&(array)[at], *(const quarter_loose *)&(array)[(at) + MAP_TILE])
-#define PUT_TWO_ROWS(array, at, value)                                                                   \
-    do {                                                                                                 \
-        *(quarter_loose *)&(array)[at] = __builtin_shufflevector(value, value, 0, 1, 2, 3);              \
-        *(quarter_loose *)&(array)[(at) + MAP_TILE] = __builtin_shufflevector(value, value, 4, 5, 6, 7); \
-    } while (0)
-#define TWO_ROWS_X ((lanes_float){0, 1, 2, 3, 0, 1, 2, 3})
-#define TWO_ROWS_Y ((lanes_float){0, 0, 0, 0, 1, 1, 1, 1})
+enum { WORD_ROWS = 8 * BLOCK_ROWS }; /* texels' that one such word of blocks holds */
 
-/* Where four columns begin that hold all of a narrow box. */
-INLINE int32_t four_from(int32_t x0) { return x0 < (int32_t)MAP_TILE - 4 ? x0 : (int32_t)MAP_TILE - 4; }
-
-/* A box at most four texels wide: four columns of two rows at a time. */
-INLINE void mark_narrow(const struct mark *k)
+/* The blocks of a word that hold something of the triangle's box, which reaches into the word. */
+INLINE uint64_t boxed_blocks(const struct map_facets *f, int lane, int32_t word)
 {
-    const struct map_facets *f = k->facets;
-    struct work *w = k->work;
-    int32_t first = four_from(f->x0[k->lane]), bottom = f->y1[k->lane];
-    lanes_float x = TWO_ROWS_X + (float)first;
-    lanes_int within = (x >= (float)f->x0[k->lane]) & (x <= (float)f->x1[k->lane]);
-    for (int32_t row = f->y0[k->lane]; row <= bottom; row += 2) {
-        size_t at = (size_t)row * MAP_TILE + (size_t)first;
-        lanes_float y = TWO_ROWS_Y + (float)row;
-        lanes_float ids = TWO_ROWS(w->id, at);
-        struct texels t = {x, y, within & (y <= (float)bottom), TWO_ROWS(w->nearest, at), TWO_ROWS(w->rank, at), (lanes_uint)ids};
-        mark_texels(k, &t);
-        ids = (lanes_float)t.id;
-        PUT_TWO_ROWS(w->nearest, at, t.nearest);
-        PUT_TWO_ROWS(w->rank, at, t.rank);
-        PUT_TWO_ROWS(w->id, at, ids);
-    }
+    int32_t top = f->y0[lane] - word * WORD_ROWS, bottom = f->y1[lane] - word * WORD_ROWS;
+    return bits_between(f->x0[lane] / BLOCK_COLUMNS, f->x1[lane] / BLOCK_COLUMNS, top > 0 ? top / BLOCK_ROWS : 0,
+                        bottom < WORD_ROWS ? bottom / BLOCK_ROWS : 7);
 }
 
-/* What of row y the edges leave, a little more than less: most of a long thin triangle's box is empty. */
-struct spans {
-    float at[3], step[3]; /* edge e crosses row y at at + step y */
-    bool left[3], right[3];
-};
-
-INLINE struct spans find_spans(const struct map_facets *f, int lane)
+/* The blocks of a word that its edges leave, and a few more. */
+INLINE uint64_t spanned_blocks(const struct map_facets *f, int lane, int32_t word)
 {
-    struct spans s;
+    lanes_float top = (LANES_COUNT + (float)(8 * word)) * BLOCK_ROWS, bottom = top + (BLOCK_ROWS - 1);
+    top = LANES_MAX(top, LANES_ALL(f->top[lane]));
+    bottom = LANES_MIN(bottom, LANES_ALL(f->bottom[lane]));
+    lanes_float from = LANES_ALL(f->left[lane]), to = LANES_ALL(f->right[lane]);
+#pragma GCC unroll 3
     for (int e = 0; e < 3; e++) {
-        float a = f->a[e][lane], inverse = 1 / a;
-        s.at[e] = -(f->c[e][lane] + f->reach[e][lane]) * inverse;
-        s.step[e] = -f->b[e][lane] * inverse;
-        /* Steep enough that the crossing is sure to within a texel. */
-        s.left[e] = a > 0 && fabsf(s.at[e]) < 1e5f && fabsf(s.step[e]) < 1e3f;
-        s.right[e] = a < 0 && fabsf(s.at[e]) < 1e5f && fabsf(s.step[e]) < 1e3f;
+        lanes_float p = f->at_row[e][lane] + f->step[e][lane] * top, q = f->at_row[e][lane] + f->step[e][lane] * bottom;
+        lanes_float least = LANES_MIN(p, q) + f->before[e][lane], most = LANES_MAX(p, q) + f->after[e][lane];
+        from = LANES_MAX(from, least);
+        to = LANES_MIN(to, most);
     }
-    return s;
+    lanes_int some = (from <= to) & (top <= bottom);
+    lanes_int first = __builtin_convertvector((lanes_float)((lanes_int)from & some), lanes_int) / BLOCK_COLUMNS;
+    lanes_int last = __builtin_convertvector((lanes_float)((lanes_int)to & some), lanes_int) / BLOCK_COLUMNS;
+    lanes_int bits = (((lanes_int){} + 2) << last) - (((lanes_int){} + 1) << first);
+    return (uint64_t) __builtin_convertvector(bits & some, row_bits);
 }
 
-INLINE void mark_wide(const struct mark *k)
+INLINE void mark_triangle(const struct mark *k)
 {
     const struct map_facets *f = k->facets;
-    int32_t x0 = f->x0[k->lane], x1 = f->x1[k->lane], y0 = f->y0[k->lane], y1 = f->y1[k->lane];
-    int32_t first = x0 & ~(CONSERVATIVE_LANES - 1);
-    if (x1 - first < CONSERVATIVE_LANES) {
-        for (int32_t y = y0; y <= y1; y++)
-            mark_row(k, first, y);
-        return;
-    }
-    struct spans s = find_spans(f, k->lane);
-    for (int32_t y = y0; y <= y1; y++) {
-        float from = (float)x0, to = (float)x1;
-        for (int e = 0; e < 3; e++) {
-            float cross = s.at[e] + s.step[e] * (float)y;
-            from = s.left[e] && cross - 1 > from ? cross - 1 : from;
-            to = s.right[e] && cross + 1 < to ? cross + 1 : to;
-        }
-        if (!(from <= to))
-            continue;
-        for (int32_t x = (int32_t)from & ~(CONSERVATIVE_LANES - 1); x <= (int32_t)to; x += CONSERVATIVE_LANES)
-            mark_row(k, x, y);
+    int32_t first = f->y0[k->lane] / WORD_ROWS, last = f->y1[k->lane] / WORD_ROWS;
+    for (int32_t word = first; word <= last; word++) {
+        uint64_t blocks = f->wide[k->lane] ? spanned_blocks(f, k->lane, word) : boxed_blocks(f, k->lane, word);
+        for (; blocks; blocks &= blocks - 1)
+            mark_block(k, (uint32_t)(64 * word + __builtin_ctzll(blocks)));
     }
 }
 
-/* Whether everything in the triangle's box is known to be nearer than its nearest corner: it would change nothing. Half of a closed mesh. */
+/* Finds of each square of the tile the rank that is last. */
+static void find_last_ranks(struct work *w)
+{
+    for (uint32_t i = 0; i < SQUARES; i++) {
+        uint32_t x = i % 8 * SQUARE, y = i / 8 * SQUARE;
+        lanes_quarter last = *(const lanes_quarter *)&w->rank[block_place(x, y)];
+        for (uint32_t row = y + 1; row < y + SQUARE; row++) {
+            lanes_quarter next = *(const lanes_quarter *)&w->rank[block_place(x, row)];
+            for (int k = 0; k < 4; k++)
+                last[k] = next[k] > last[k] ? next[k] : last[k];
+        }
+        w->last[i] = CONSERVATIVE_MOST(last);
+        w->last[i] = last[3] > w->last[i] ? last[3] : w->last[i];
+    }
+}
+
+/* Whether all squares that hold something of the triangle's box are known to be nearer than its nearest corner: it would change nothing. Half of
+ * a closed mesh. */
 INLINE bool is_hidden(const struct map_facets *f, int lane, const struct work *w)
 {
-    int32_t x0 = f->x0[lane], x1 = f->x1[lane], row = f->y0[lane], bottom = f->y1[lane];
-    lanes_float most = LANES_ALL(-f->most[lane]), columns;
-    lanes_int open = {};
-    if (x1 - x0 < 4) {
-        int32_t first = four_from(x0);
-        columns = TWO_ROWS_X + (float)first;
-        for (; row < bottom; row += 2)
-            open |= TWO_ROWS(w->rank, row * (int32_t)MAP_TILE + first) > most;
-        if (row == bottom) {
-            lanes_quarter last = *(const quarter_loose *)&w->rank[row * (int32_t)MAP_TILE + first];
-            open |= LANES_OF(last, last) > most;
-        }
-    } else {
-        int32_t first = x0 & ~(CONSERVATIVE_LANES - 1);
-        if (x1 - first >= CONSERVATIVE_LANES)
-            return false; /* not worth the look */
-        columns = LANES_COUNT + (float)first;
-        for (; row <= bottom; row++)
-            open |= *(const lanes_float *)&w->rank[row * (int32_t)MAP_TILE + first] > most;
-    }
-    open &= (columns >= (float)x0) & (columns <= (float)x1);
-    return !LANES_ANY(open);
+    block_float most = block_all(-f->most[lane]);
+    uint64_t open = 0;
+    for (int i = 0; i < SQUARES; i += BLOCK)
+        open |= (uint64_t)block_bits(block_above(*(const block_float *)&w->last[i], most)) << i;
+    return (open & bits_between(f->x0[lane] / SQUARE, f->x1[lane] / SQUARE, f->y0[lane] / SQUARE, f->y1[lane] / SQUARE)) == 0;
 }
 
 /* Up to eight triangles of a tile; lanes beyond `count` repeat the first. */
@@ -229,8 +187,9 @@ static void take_batch(const struct geometry_map *m, const uint32_t *triangles, 
     }
 }
 
-INLINE void mark_triangles(const struct geometry_map *m, const uint32_t *triangles, size_t count, float left, float top,
-                           struct work *w)
+/* test: for what is hidden by what find_last_ranks() found. */
+static void mark_triangles(const struct geometry_map *m, const uint32_t *triangles, size_t count, bool test, float left,
+                           float top, struct work *w)
 {
     uint32_t hint = 0;
     for (size_t first = 0; first < count; first += CONSERVATIVE_LANES) {
@@ -238,26 +197,24 @@ INLINE void mark_triangles(const struct geometry_map *m, const uint32_t *triangl
         struct map_facets f;
         take_batch(m, triangles, first, count, &hint, &batch);
         map_facets_box(&f, batch.triangle, left, top, MAP_TILE);
-        unsigned open = 0;
-        for (int i = 0; i < batch.count; i++)
-            open |= f.over[i] && !is_hidden(&f, i, w) ? 1u << i : 0;
+        unsigned open = LANES_BITS(f.over) & ((1u << batch.count) - 1);
+        for (unsigned rest = test ? open : 0; rest; rest &= rest - 1) {
+            int i = __builtin_ctz(rest);
+            open &= ~((unsigned)is_hidden(&f, i, w) << i);
+        }
         if (!open)
             continue;
         map_facets_set(&f, m->mesh.nearest, MAP_TILE);
+        if (LANES_ANY(f.wide))
+            map_facets_spans(&f);
         for (; open; open &= open - 1) {
             int i = __builtin_ctz(open);
             struct mark mark = {m, &f, i, batch.id[i], NULL, left, top, w};
             /* Thin in projection: may have no area at all, and casts nothing then. */
             if (f.thin[i] && light_part_degenerate(m->mesh.scene, batch.part[i], batch.id[i]))
                 continue;
-            if (batch.part[i]->holes) {
-                mark.holes = batch.part[i];
-                mark_wide(&mark);
-            } else if (f.x1[i] - f.x0[i] < 4) {
-                mark_narrow(&mark);
-            } else {
-                mark_wide(&mark);
-            }
+            mark.holes = batch.part[i]->holes ? batch.part[i] : NULL;
+            mark_triangle(&mark);
         }
     }
 }
@@ -332,23 +289,42 @@ static void mark_wild(const struct geometry_map *m, uint32_t id, float left, flo
     for (int k = 0; k < 3; k++)
         if (highest_over(f.edge[k], left + MAP_TILE / 2.0, top + MAP_TILE / 2.0, MAP_TILE) < 0)
             return;
-    for (uint32_t i = 0; i < TEXELS; i++)
-        mark_wild_texel(m, part, &f, id, left + i % MAP_TILE + 0.5, top + i / MAP_TILE + 0.5, w, i);
+    for (uint32_t y = 0; y < MAP_TILE; y++)
+        for (uint32_t x = 0; x < MAP_TILE; x++)
+            mark_wild_texel(m, part, &f, id, left + x + 0.5, top + y + 0.5, w, block_place(x, y));
 }
 
-static void rasterize(const struct geometry_map *m, uint32_t tile_x, uint32_t tile_y, const uint32_t *triangles, size_t count,
-                      struct map_cell *cells)
+typedef int32_t quarter_int __attribute__((vector_size(16), aligned(8), may_alias));
+
+/* Nearest depths and triangles side by side, rows after rows. */
+static void put_cells(const struct work *w, struct map_cell *cells)
+{
+    for (uint32_t y = 0; y < MAP_TILE; y++)
+        for (uint32_t x = 0; x < MAP_TILE; x += BLOCK_COLUMNS) {
+            uint32_t at = block_place(x, y);
+            lanes_quarter nearest = *(const lanes_quarter *)&w->nearest[at], rank = *(const lanes_quarter *)&w->rank[at];
+            quarter_int id = *(const quarter_int *)&w->id[at];
+            id |= (rank >= 0) & (int32_t)MAP_OFF_EDGE;
+            quarter_int *out = (quarter_int *)&cells[y * MAP_TILE + x];
+            out[0] = __builtin_shufflevector((quarter_int)nearest, id, 0, 4, 1, 5);
+            out[1] = __builtin_shufflevector((quarter_int)nearest, id, 2, 6, 3, 7);
+        }
+}
+
+static void rasterize(const struct geometry_map *m, uint32_t tile_x, uint32_t tile_y, const uint32_t *triangles, size_t front,
+                      size_t count, struct map_cell *cells)
 {
     struct work w;
     float left = (float)(tile_x * MAP_TILE), top = (float)(tile_y * MAP_TILE);
-    for (size_t i = 0; i < sizeof w.id / sizeof *w.id; i++) {
+    for (size_t i = 0; i < TEXELS; i++) {
         w.nearest[i] = -INFINITY;
         w.rank[i] = INFINITY;
         w.id[i] = MAP_NONE;
     }
-    mark_triangles(m, triangles, count, left, top, &w);
+    mark_triangles(m, triangles, front, false, left, top, &w);
+    find_last_ranks(&w);
+    mark_triangles(m, triangles + front, count - front, true, left, top, &w);
     for (size_t i = 0; i < m->wild_count; i++)
         mark_wild(m, m->wild[i], left, top, &w);
-    for (int i = 0; i < TEXELS; i++)
-        cells[i] = (struct map_cell){w.nearest[i], w.rank[i] >= 0 ? w.id[i] | MAP_OFF_EDGE : w.id[i]};
+    put_cells(&w, cells);
 }
