@@ -110,10 +110,13 @@ static void decide_packed(const struct some_points *s, struct coverage_window *w
 }
 
 /* A texel's own triangle is in every list, and enough for most points that are dark: without a list. */
-static void ask_own(const struct some_points *s, struct coverage_asks *a)
+static void ask_own(const struct some_points *s, const struct coverage_window *w, struct coverage_asks *a)
 {
-    for (size_t i = 0; i < s->count; i++)
-        coverage_asks_put(a, (uint32_t)i, s->map->cells[s->points[i].at].triangle & MAP_ID);
+    for (size_t i = 0; i < s->count; i++) {
+        uint32_t at = s->points[i].at;
+        __builtin_prefetch(&s->map->notes[at]);
+        coverage_asks_put(a, (uint32_t)i, w->id[coverage_window_at(at % MAP_TILE, at / MAP_TILE % MAP_TILE)]);
+    }
     coverage_asks_finish_pairs(a);
 }
 
@@ -136,7 +139,7 @@ static void decide_exact(const struct some_points *s, struct coverage_window *w,
     struct coverage_asks a;
     const struct adjacency *adjacency = s->params[PARAM_RECOVERY] == 1 ? &s->state->adjacency : NULL;
     coverage_asks_open(&a, s->map, adjacency, s->points, s->count);
-    ask_own(s, &a);
+    ask_own(s, w, &a);
     make_lists(s, a.known, w);
     ask_lists(s, w, &a);
     for (size_t i = 0; i < s->count; i++)

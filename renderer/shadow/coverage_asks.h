@@ -37,7 +37,7 @@ struct coverage_asks {
     size_t pair_count, way_count;
     uint8_t known[ASKS_POINTS];
     struct coverage_pair pairs[ASKS_QUEUE];
-    struct coverage_way ways[ASKS_QUEUE];
+    struct coverage_way ways[ASKS_QUEUE + 1];
 };
 
 /* For `count` points of one map, ASKS_POINTS at the most. */

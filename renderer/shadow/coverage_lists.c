@@ -1,7 +1,5 @@
 #include "shadow/coverage_lists.h"
 
-#include <stdatomic.h>
-
 #include "shadow/geometry_kernel.h"
 
 const int8_t coverage_pool[COVERAGE_POOL][2] = {
@@ -16,17 +14,15 @@ const int16_t coverage_window_step[COVERAGE_POOL] = {
     STEP(-1, 2), STEP(1, -2), STEP(-1, -2), STEP(2, 2),  STEP(-2, 2), STEP(2, -2), STEP(-2, -2),
 };
 
-static uint32_t id_of(uint32_t triangle) { return triangle == MAP_NONE ? MAP_NONE : triangle & MAP_ID; }
-
-/* Its row y, of the tile; from the texels of other tiles too where `whole`. */
-static void load_row(struct coverage_window *w, int32_t y, bool whole)
+/* At the map's ends. */
+static void load_singly(struct coverage_window *w)
 {
-    uint32_t *out = w->id + (size_t)(y + WINDOW_AROUND) * WINDOW_SIDE;
-    for (int32_t k = 0; k < WINDOW_SIDE; k++) {
-        if (!whole && k == WINDOW_AROUND)
-            k += MAP_TILE;
-        out[k] = id_of(geometry_map_triangle(w->map, (int32_t)w->left + k - WINDOW_AROUND, (int32_t)w->top + y));
-    }
+    for (int32_t y = 0; y < WINDOW_SIDE; y++)
+        for (int32_t x = 0; x < WINDOW_SIDE; x++) {
+            uint32_t id =
+                geometry_map_triangle(w->map, (int32_t)w->left + x - WINDOW_AROUND, (int32_t)w->top + y - WINDOW_AROUND);
+            w->id[y * WINDOW_SIDE + x] = id == MAP_NONE ? MAP_NONE : id & MAP_ID;
+        }
 }
 
 void coverage_window_open(struct coverage_window *w, const struct geometry_map *m, uint32_t x, uint32_t y)
@@ -35,27 +31,19 @@ void coverage_window_open(struct coverage_window *w, const struct geometry_map *
     w->left = x & ~(MAP_TILE - 1);
     w->top = y & ~(MAP_TILE - 1);
     w->first = geometry_map_at(m, w->left, w->top);
-    bool whole = w->left + MAP_TILE > m->size || w->top + MAP_TILE > m->size;
-    for (int32_t row = -WINDOW_AROUND; row < (int32_t)MAP_TILE + WINDOW_AROUND; row++)
-        load_row(w, row, whole || row < 0 || row >= (int32_t)MAP_TILE);
-    for (uint32_t row = 0; !whole && row < MAP_TILE; row++)
-        for (uint32_t k = 0; k < MAP_TILE; k++)
-            w->id[coverage_window_at(k, row)] = id_of(m->cells[w->first + row * MAP_TILE + k].triangle);
+    if (w->left + MAP_TILE + WINDOW_AROUND > m->size || w->top + MAP_TILE + WINDOW_AROUND > m->size)
+        load_singly(w);
+    else
+        geometry_kernel_choose()->load_window(w);
 }
 
 /* Two threads that make one list at once write the same. */
-static _Atomic uint32_t *note_of(const struct geometry_map *m, size_t at) { return (_Atomic uint32_t *)&m->notes[at]; }
-
-uint32_t coverage_list(const struct geometry_map *m, size_t at)
-{
-    return atomic_load_explicit(note_of(m, at), memory_order_relaxed);
-}
-
 static void make_some(struct coverage_texels *t)
 {
     geometry_kernel_choose()->make_lists(t);
     for (unsigned k = 0; k < t->count; k++)
-        atomic_store_explicit(note_of(t->window->map, t->window->first + t->texel[k]), t->lists[k], memory_order_relaxed);
+        atomic_store_explicit((_Atomic uint32_t *)&t->window->map->notes[t->window->first + t->texel[k]], t->lists[k],
+                              memory_order_relaxed);
     t->count = 0;
 }
 

@@ -5,6 +5,7 @@
  * visible pixel reads cost nothing, and a camera that moves adds lists and changes none. */
 #pragma once
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -46,7 +47,10 @@ void coverage_window_open(struct coverage_window *w, const struct geometry_map *
 void coverage_lists_make(struct coverage_window *w, const uint32_t wanted[MAP_TILE], unsigned nodes, unsigned pool);
 
 /* Texel `at`'s list; 0: it has none. Which texels have depends on the pixels that asked, so nothing that shows may. */
-uint32_t coverage_list(const struct geometry_map *m, size_t at);
+static inline uint32_t coverage_list(const struct geometry_map *m, size_t at)
+{
+    return atomic_load_explicit((_Atomic uint32_t *)&m->notes[at], memory_order_relaxed);
+}
 
 /* The triangles of a list of texel (x, y): distinct drawn ids, MAP_OFF_EDGE taken off; returns how many. */
 unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,

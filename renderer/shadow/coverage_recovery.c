@@ -3,13 +3,19 @@
 /* Triangles of a texel's size and less: the one looked for is a few edges away. */
 enum { STEPS_MAX = 15 };
 
+enum { WAYS_AHEAD = 16 };
+
+/* What lies across the edges of triangle `id`: adjacency is laid out as the scene's indices are. */
+static const uint32_t *across(const struct coverage_asks *a, const struct light_part *part, uint32_t id)
+{
+    return a->adjacency->across + (part->indices - a->map->mesh.scene->indices) + 3 * (size_t)(id - part->first_triangle);
+}
+
 /* One edge on. False: the way ends. */
 static bool step(struct coverage_asks *a, struct coverage_way *w)
 {
-    const struct light_mesh *m = &a->map->mesh;
-    const struct light_part *part = light_mesh_part(m, w->triangle, &a->hint);
-    const struct mesh *mesh = &m->scene->meshes[m->scene->instances[part->instance].mesh];
-    uint32_t next = adjacency_of(a->adjacency, mesh, w->triangle - part->first_triangle)[w->beyond];
+    const struct light_part *part = light_mesh_part(&a->map->mesh, w->triangle, &a->hint);
+    uint32_t next = across(a, part, w->triangle)[w->beyond];
     if (next == SCENE_NONE || next + part->first_triangle == w->before)
         return false;
     w->before = w->triangle;
@@ -43,6 +49,10 @@ static size_t step_all(struct coverage_asks *a, size_t count)
     size_t open = 0;
     for (size_t i = 0; i < count; i++) {
         struct coverage_way w = a->ways[i];
+        if (i + WAYS_AHEAD < count) {
+            uint32_t later = a->ways[i + WAYS_AHEAD].triangle;
+            __builtin_prefetch(across(a, light_mesh_part(&a->map->mesh, later, &a->hint), later));
+        }
         if (!(a->known[w.point] & POINT_DARK) && step(a, &w))
             a->ways[open++] = w;
     }
@@ -54,6 +64,10 @@ static size_t look_at_all(struct coverage_asks *a, size_t count)
     size_t open = 0;
     for (size_t first = 0; first < count; first += LOOKS) {
         unsigned some = count - first < LOOKS ? (unsigned)(count - first) : LOOKS;
+        for (size_t k = first + WAYS_AHEAD; k < first + WAYS_AHEAD + LOOKS && k < count; k++) {
+            uint32_t id = a->ways[k].triangle;
+            light_part_prefetch_vertices(light_mesh_part(&a->map->mesh, id, &a->hint), id);
+        }
         struct map_looks l;
         for (unsigned k = 0; k < some; k++)
             map_looks_put(&l, k, &a->points[a->ways[first + k].point], a->ways[first + k].triangle);

@@ -4,7 +4,7 @@
 #include "shadow/points_lanes.h"
 
 #ifdef __AVX2__
-const struct geometry_kernel geometry_avx2 = {find_points, look_at_eight, make_lists};
+const struct geometry_kernel geometry_avx2 = {find_points, look_at_eight, load_window, make_lists};
 #else
 const struct geometry_kernel geometry_avx2 = {0};
 #endif

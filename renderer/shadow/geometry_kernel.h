@@ -7,7 +7,8 @@
 struct geometry_kernel {
     void (*find_points)(void *point_job, size_t chunk, unsigned worker); /* for job_pool_for() */
     void (*look)(const struct geometry_map *m, struct map_looks *l,
-                 uint32_t *hint); /* all eight; wild and holed ones are not looked after */
+                 uint32_t *hint);                   /* all eight; wild and holed ones are not looked after */
+    void (*load_window)(struct coverage_window *w); /* its ids; it lies on the map wholly, but for its low ends */
     void (*make_lists)(struct coverage_texels *t);
 };
 extern const struct geometry_kernel geometry_plain, geometry_avx2; /* the latter empty where the compiler has none */
