@@ -9,7 +9,9 @@
 #include "shadow/light_lanes.h"
 #include "shadow/map_tile.h"
 
-enum { CHUNKS = 16 }; /* parts that triangles are sorted in, whatever the threads: each has a count per tile */
+/* Triangles are sorted in parts, one after the other in every bin, so that it does not matter how many: each has a count per bin, which one
+ * thread adds up. */
+enum { CHUNKS_A_THREAD = 4, CHUNKS_MAX = 32 };
 
 /* A tile has two bins: triangles that turn clockwise and those that turn the other way. Where a mesh is closed, one of them is hidden by the
  * other, which is rasterized first. */
@@ -25,9 +27,9 @@ enum { BINS = 2 };
 
 struct build {
     struct geometry_map *map;
-    size_t starts[CHUNKS + 1]; /* of each chunk, in the order of the mesh's triangles */
-    bool filling;              /* second sweep: put entries where the first one's counts say */
-    uint32_t *wild;            /* of each chunk, of the first sweep: how many */
+    size_t chunks, starts[CHUNKS_MAX + 1]; /* of each chunk, in the order of the mesh's triangles */
+    bool filling;                          /* second sweep: put entries where the first one's counts say */
+    uint32_t *wild;                        /* of each chunk, of the first sweep: how many */
 };
 
 static bool out_of_memory(struct error *err)
@@ -220,7 +222,7 @@ static bool place_entries(struct build *b, struct error *err)
     struct geometry_map *m = b->map;
     size_t tiles = (size_t)m->tiles * m->tiles, total = 0, slots = 0;
     uint32_t wild = 0;
-    for (size_t chunk = 0; chunk < CHUNKS; chunk++) {
+    for (size_t chunk = 0; chunk < b->chunks; chunk++) {
         uint32_t count = b->wild[chunk];
         b->wild[chunk] = wild;
         wild += count;
@@ -228,25 +230,23 @@ static bool place_entries(struct build *b, struct error *err)
     m->wild_count = wild;
     for (size_t tile = 0; tile < tiles; tile++) {
         size_t before = total;
-        for (size_t k = 0; k < BINS * CHUNKS; k++) {
-            uint32_t *count = &m->counts[(k % CHUNKS * tiles + tile) * BINS + k / CHUNKS], n = *count;
-            *count = (uint32_t)total;
-            total += n;
-        }
+        for (size_t bin = tile * BINS; bin < (tile + 1) * BINS; bin++)
+            for (size_t chunk = 0; chunk < b->chunks; chunk++) {
+                uint32_t *count = &m->counts[chunk * tiles * BINS + bin], n = *count;
+                *count = (uint32_t)total;
+                total += n;
+            }
         m->slot[tile] = total > before || wild > 0 ? (uint32_t)slots++ : MAP_NONE;
     }
     if (total >= MAP_NONE)
         return error_set(err, ERROR_TRY_AGAIN, "size", "too many triangles for a map of %u x %u", m->size, m->size);
     m->slot_count = slots;
-    size_t texels = slots * MAP_TILE * MAP_TILE;
     size_t note_room = m->slot_room;
     if (!reserve((void **)&m->notes, &note_room, slots, MAP_TILE * MAP_TILE * sizeof *m->notes, err) ||
         !reserve((void **)&m->cells, &m->slot_room, slots, MAP_TILE * MAP_TILE * sizeof *m->cells, err)) {
         m->slot_room = 0;
         return false;
     }
-    if (texels > 0)
-        memset(m->notes, 0, texels * sizeof *m->notes);
     return reserve((void **)&m->entries, &m->entry_room, total, sizeof *m->entries, err) &&
            reserve((void **)&m->wild, &m->wild_room, wild, sizeof *m->wild, err);
 }
@@ -259,25 +259,29 @@ static void fill_tile(void *context, size_t tile, unsigned worker)
     if (m->slot[tile] == MAP_NONE)
         return;
     /* After the second sweep a chunk's start is where the next one's entries begin; the first one's is the end of the tile before. */
-    const uint32_t *last = m->counts + (CHUNKS - 1) * (size_t)m->tiles * m->tiles * BINS;
+    const uint32_t *last = m->counts + (b->chunks - 1) * (size_t)m->tiles * m->tiles * BINS;
     uint32_t first = tile == 0 ? 0 : last[tile * BINS - 1], front = last[tile * BINS], end = last[tile * BINS + 1];
+    size_t texel = (size_t)m->slot[tile] * MAP_TILE * MAP_TILE;
+    memset(m->notes + texel, 0, MAP_TILE * MAP_TILE * sizeof *m->notes);
     map_tile_choose()(m, (uint32_t)(tile % m->tiles), (uint32_t)(tile / m->tiles), m->entries + first, front - first, end - first,
-                      m->cells + (size_t)m->slot[tile] * MAP_TILE * MAP_TILE);
+                      m->cells + texel);
 }
 
 static bool build_tiles(struct geometry_map *m, struct job_pool *pool, struct error *err)
 {
-    uint32_t wild[CHUNKS] = {0};
-    struct build b = {.map = m, .wild = wild};
-    for (size_t k = 0; k <= CHUNKS; k++)
-        b.starts[k] = m->mesh.triangle_count * k / CHUNKS;
-    if (!reserve((void **)&m->homes, &m->home_room, m->mesh.triangle_count, sizeof *m->homes, err))
+    uint32_t wild[CHUNKS_MAX] = {0};
+    size_t chunks = (size_t)job_pool_threads(pool) * CHUNKS_A_THREAD, bins = (size_t)m->tiles * m->tiles * BINS;
+    struct build b = {.map = m, .chunks = chunks < CHUNKS_MAX ? chunks : CHUNKS_MAX, .wild = wild};
+    for (size_t k = 0; k <= b.chunks; k++)
+        b.starts[k] = m->mesh.triangle_count * k / b.chunks;
+    if (!reserve((void **)&m->counts, &m->count_room, bins * b.chunks, sizeof *m->counts, err) ||
+        !reserve((void **)&m->homes, &m->home_room, m->mesh.triangle_count, sizeof *m->homes, err))
         return false;
-    job_pool_for(pool, CHUNKS, sort_chunk, &b);
+    job_pool_for(pool, b.chunks, sort_chunk, &b);
     if (!place_entries(&b, err))
         return false;
     b.filling = true;
-    job_pool_for(pool, CHUNKS, sort_chunk, &b);
+    job_pool_for(pool, b.chunks, sort_chunk, &b);
     job_pool_for(pool, (size_t)m->tiles * m->tiles, fill_tile, &b);
     return true;
 }
@@ -291,8 +295,8 @@ static bool resize(struct geometry_map *m, uint32_t size, struct error *err)
     free(m->slot);
     m->slot = malloc((size_t)tiles * tiles * sizeof *m->slot);
     m->tiles = tiles;
-    if (!m->slot || !reserve((void **)&m->counts, &m->count_room, (size_t)tiles * tiles * BINS * CHUNKS, sizeof *m->counts, err))
-        return m->slot ? false : out_of_memory(err);
+    if (!m->slot)
+        return out_of_memory(err);
     m->size = size;
     return true;
 }
