@@ -46,6 +46,21 @@ LANES_INLINE lanes lanes_gather(const float *p, lane_ints at)
     return (lanes){p[at[0]], p[at[1]], p[at[2]], p[at[3]], p[at[4]], p[at[5]], p[at[6]], p[at[7]]};
 }
 
+/* out[i]: number 4 at + i. */
+LANES_INLINE void lanes_gather_fours(const float *p, lane_ints at, lanes out[4])
+{
+    __m256 rows[4];
+    for (int i = 0; i < 4; i++)
+        rows[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 4 * (intptr_t)at[i])),
+                                       _mm_loadu_ps(p + 4 * (intptr_t)at[i + 4]), 1);
+    __m256 a = _mm256_unpacklo_ps(rows[0], rows[1]), b = _mm256_unpacklo_ps(rows[2], rows[3]);
+    __m256 c = _mm256_unpackhi_ps(rows[0], rows[1]), d = _mm256_unpackhi_ps(rows[2], rows[3]);
+    out[0] = _mm256_shuffle_ps(a, b, 0x44);
+    out[1] = _mm256_shuffle_ps(a, b, 0xee);
+    out[2] = _mm256_shuffle_ps(c, d, 0x44);
+    out[3] = _mm256_shuffle_ps(c, d, 0xee);
+}
+
 #else
 
 LANES_INLINE lanes lanes_pick(lane_ints mask, lanes a, lanes b)
@@ -78,6 +93,13 @@ LANES_INLINE lanes lanes_gather(const float *p, lane_ints at)
     for (int i = 0; i < LANES; i++)
         out[i] = p[at[i]];
     return out;
+}
+
+LANES_INLINE void lanes_gather_fours(const float *p, lane_ints at, lanes out[4])
+{
+    for (int i = 0; i < LANES; i++)
+        for (int k = 0; k < 4; k++)
+            out[k][i] = p[4 * (intptr_t)at[i] + k];
 }
 
 #endif

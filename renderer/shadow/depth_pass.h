@@ -58,16 +58,17 @@ struct depth_job {
     float bias, slope;
     enum depth_filter filter;
     const struct depth_square *square;
-    float umbra; /* what is left of the light where all is dark */
+    float umbra;                     /* what is left of the light where all is dark */
+    const struct map_bounds *bounds; /* of texels; DEPTH_ADAPTIVE and struct soft_job */
 };
 
 /* For job_pool_for(). */
 typedef void depth_rows(void *job, size_t index, unsigned worker);
 struct depth_kernel {
-    depth_rows *filter; /* of struct depth_job, depth_job_count() of them */
-    depth_rows *soft_term, *soft_blur_x,
-        *soft_blur_y;      /* of struct soft_job (soft_pass.h), one after the other; the first: all rows */
-    depth_rows *rasterize; /* of struct raster_job (map_raster.h): a band */
+    depth_rows *filter;                /* of struct depth_job, depth_job_count() of them */
+    depth_rows *soft_term, *soft_blur; /* of struct soft_job (soft_pass.h), one after the other */
+    depth_rows *rasterize;             /* of struct raster_job (map_raster.h): a band */
+    depth_rows *bound, *bound_widen;   /* of struct bound_job (map_bounds.h): a band; one after the other */
 };
 extern const struct depth_kernel depth_plain, depth_avx2; /* the latter empty where the compiler has none */
 

@@ -65,7 +65,7 @@ static uint32_t block_side(const struct soft *s, const struct shadow_input *in)
     const struct view *map = &s->maps.fit.maps[0];
     double texels = map->width / (map->right_edge - map->left), radius = light_radius(s, in);
     double across = map->orthographic ? radius : radius * fmin(in->params[PARAM_FAR], 1) / map->near;
-    uint32_t side = 4;
+    uint32_t side = 8;
     while (side < 64 && side < across * texels)
         side *= 2;
     return side;

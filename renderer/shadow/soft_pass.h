@@ -7,15 +7,18 @@
 #include <stdint.h>
 
 #include "shadow/depth_pass.h"
+#include "shadow/map_bounds.h"
 
 struct soft_pass {
-    uint32_t *terms, *blurred; /* a pixel: shaders/soft_term.glsl; owned */
-    float *sigmas[2];          /* standard deviations along x and y, pixels; owned */
+    uint32_t stride; /* of rows in a picture's arrays: the width, or little more */
+    uint32_t *terms; /* a pixel, blurred along x: shaders/soft_term.glsl; owned */
+    float *sigmas;   /* standard deviations along y, pixels, where `blurs`; owned */
+    uint8_t *blurs;  /* of eight pixels, whether any is blurred; owned */
     size_t pixel_room;
-    float *ranges; /* what struct map_ranges holds: two floats a block, map after map; owned */
-    float *own;    /* the same of each block alone */
-    size_t range_room;
-    uint32_t block, blocks; /* side of a block, texels; blocks a side of a map */
+    uint32_t *band_terms; /* of DEPTH_ROWS rows at work, for each worker; owned */
+    float *band_sigmas;
+    size_t band_room;
+    struct map_bounds bounds;
 };
 
 /* What the pass is told besides its maps. */
@@ -32,7 +35,8 @@ struct soft_job {
     float grain;   /* a pixel's size; relative to the depth in perspective */
 };
 
-/* From maps prepared with in->resolve_on_cpu. `block`: a power of two, 4 to 64. */
+/* From maps prepared with in->resolve_on_cpu. `block`: as far as any blur may reach, texels: a power of two, 8 to
+ * BOUND_LARGEST. */
 bool soft_pass_prepare(struct soft_pass *s, const struct light_maps *maps, const struct shadow_input *in, uint32_t block,
                        struct error *err);
 bool soft_pass_resolve(struct soft_pass *s, const struct light_maps *maps, const struct shadow_input *in,
