@@ -95,7 +95,20 @@ LANES_INLINE lanes filtered(const struct depth_job *job, const struct map_points
     }
 }
 
-LANES_INLINE lanes filter_pixels(const struct depth_job *job, uint32_t x, uint32_t y)
+enum { EARLY_LANES = 4 };
+
+/* The row below finds its texels about as far on as this row found its from the row above: `before`, made this row's. */
+LANES_INLINE void fetch_early(const struct depth_job *job, const struct map_points *m, int32_t before[EARLY_LANES])
+{
+    lane_ints at = texel_at(job, m, lanes_truncate(m->x), lanes_truncate(m->y));
+    for (int i = 0; i < EARLY_LANES; i++) {
+        int32_t now = at[2 * i + 1];
+        __builtin_prefetch((const void *)((uintptr_t)job->texels + sizeof(float) * (uintptr_t)(2 * (intptr_t)now - before[i])));
+        before[i] = now;
+    }
+}
+
+LANES_INLINE lanes filter_pixels(const struct depth_job *job, uint32_t x, uint32_t y, int32_t before[EARLY_LANES])
 {
     struct pixel room[LANES];
     struct receivers r;
@@ -105,6 +118,7 @@ LANES_INLINE lanes filter_pixels(const struct depth_job *job, uint32_t x, uint32
     place_receivers(job, &r, &m);
     lanes lit = lanes_all(1);
     if (lanes_bits(m.on)) {
+        fetch_early(job, &m, before);
         lit = filtered(job, &m, biased_depth(job, &r, &m));
         lit = lanes_pick(m.on, job->umbra + (1 - job->umbra) * lit, lanes_all(1));
     }
@@ -116,8 +130,10 @@ static void filter_rows(void *context, size_t index, unsigned worker)
     (void)worker;
     const struct depth_job *job = context;
     uint32_t top = job->top + (uint32_t)index * DEPTH_ROWS, bottom = lesser(top + DEPTH_ROWS, job->bottom);
+    int32_t before[DEPTH_COLUMNS / LANES][EARLY_LANES] = {{0}};
     for (uint32_t left = 0; left < job->width; left += DEPTH_COLUMNS)
         for (uint32_t y = top, right = lesser(left + DEPTH_COLUMNS, job->width); y < bottom; y++)
             for (uint32_t x = left; x < right; x += LANES)
-                put_values(job->visibility + (size_t)y * job->width + x, filter_pixels(job, x, y), job->width - x);
+                put_values(job->visibility + (size_t)y * job->width + x, filter_pixels(job, x, y, before[(x - left) / LANES]),
+                           job->width - x);
 }

@@ -16,7 +16,7 @@ struct pixel;
 
 enum {
     DEPTH_ROWS = 16,    /* picture rows a job */
-    DEPTH_COLUMNS = 64, /* worked on together: what they read of a map stays near */
+    DEPTH_COLUMNS = 256, /* worked on together: what they read of a map stays near */
 };
 
 /* A map as maps_block has it (shaders/blocks.h). */
