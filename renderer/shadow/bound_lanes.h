@@ -1,4 +1,4 @@
-/* map_bounds.h's planes from texels. Included by the kernels only (depth_plain.c, depth_avx2.c). */
+/* map_bounds.h's planes from texels. Included by the kernels only (depth_plain.c, depth_avx*.c). */
 #pragma once
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Eight receivers against map_bounds.h. Included by the kernels only (depth_plain.c, depth_avx2.c). */
+/* Eight receivers against map_bounds.h. Included by the kernels only (depth_plain.c, depth_avx*.c). */
 #pragma once
 
 #include "shadow/depth_receivers.h"

@@ -1,4 +1,4 @@
-/* One tap, a square of taps, or a square where its corners differ. Included by the kernels only (depth_plain.c, depth_avx2.c). */
+/* One tap, a square of taps, or a square where its corners differ. Included by the kernels only (depth_plain.c, depth_avx*.c). */
 #pragma once
 
 #include "shadow/depth_receivers.h"

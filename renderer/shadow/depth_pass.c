@@ -11,6 +11,9 @@
 const struct depth_kernel *depth_kernel_choose(void)
 {
 #ifdef __x86_64__
+    if (depth_avx512.filter && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        return &depth_avx512;
     if (depth_avx2.filter && __builtin_cpu_supports("avx2"))
         return &depth_avx2;
 #endif

@@ -1,6 +1,6 @@
 /* From pixels to visibility by depth maps, on the CPU: what sm, pcf, apcf and soft end in where the GL device is a CPU as well
  * (draw/producer.h). A software rasterizer runs both sides of a shader's branches and fetches texel by texel; here eight pixels go together, and
- * what none of them needs is left out. The loops are compiled once an instruction set (depth_plain.c, depth_avx2.c), to the same bits.
+ * what none of them needs is left out. The loops are compiled once an instruction set (depth_plain.c, depth_avx*.c), to the same bits.
  *
  * The arithmetic is that of shaders/receiver.glsl and shaders/maps.glsl, but for roundings. */
 #pragma once
@@ -15,7 +15,7 @@
 struct pixel;
 
 enum {
-    DEPTH_ROWS = 16,    /* picture rows a job */
+    DEPTH_ROWS = 16,     /* picture rows a job */
     DEPTH_COLUMNS = 256, /* worked on together: what they read of a map stays near */
 };
 
@@ -70,7 +70,7 @@ struct depth_kernel {
     depth_rows *rasterize;             /* of struct raster_job (map_raster.h): a band */
     depth_rows *bound, *bound_widen;   /* of struct bound_job (map_bounds.h): a band; one after the other */
 };
-extern const struct depth_kernel depth_plain, depth_avx2; /* the latter empty where the compiler has none */
+extern const struct depth_kernel depth_plain, depth_avx2, depth_avx512; /* empty where the compiler has none */
 
 /* The best that this machine runs. */
 const struct depth_kernel *depth_kernel_choose(void);

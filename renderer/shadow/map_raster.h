@@ -22,7 +22,7 @@ struct map_raster {
     uint32_t chunks, bands;
 };
 
-/* The vertices of a band's triangles, for the kernels (depth_plain.c, depth_avx2.c). */
+/* The vertices of a band's triangles, for the kernels (depth_plain.c, depth_avx*.c). */
 struct raster_job {
     const struct map_raster *raster;
     float *texels;

@@ -1,4 +1,4 @@
-/* A band of a depth map, rasterized. Included by the kernels only (depth_plain.c, depth_avx2.c).
+/* A band of a depth map, rasterized. Included by the kernels only (depth_plain.c, depth_avx*.c).
  *
  * Edges are inclusive, and the edge that two triangles share is computed from the same end in both: where one triangle finds a negative value the
  * other finds exactly its opposite, so that no texel centre falls between them. */

@@ -1,4 +1,4 @@
-/* soft's passes, eight pixels at once. Included by the kernels only (depth_plain.c, depth_avx2.c). */
+/* soft's passes, eight pixels at once. Included by the kernels only (depth_plain.c, depth_avx*.c). */
 #pragma once
 
 #include "shadow/bound_receivers.h"

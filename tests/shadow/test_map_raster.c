@@ -181,6 +181,8 @@ static void test_same_bits(void **state)
         assert_true(draw(scene, &view, &depth_plain, plain));
         assert_true(draw(scene, &view, &depth_avx2, wide));
         assert_memory_equal(plain, wide, sizeof plain);
+        assert_true(draw(scene, &view, depth_kernel_choose(), wide));
+        assert_memory_equal(plain, wide, sizeof plain);
         scene_destroy(scene);
     }
 }
