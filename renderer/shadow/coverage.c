@@ -129,7 +129,7 @@ static void ask_lists(const struct some_points *s, const struct coverage_window 
             continue;
         const uint32_t *id = &w->id[coverage_window_at(at % MAP_TILE, at / MAP_TILE % MAP_TILE)];
         for (uint32_t links = coverage_list(s->map, at) & COVERAGE_LINKS & ~1u; links; links &= links - 1)
-            coverage_asks_put(a, (uint32_t)i, id[coverage_window_step[__builtin_ctz(links)]]);
+            coverage_asks_put(a, (uint32_t)i, id[coverage_window_step((unsigned)__builtin_ctz(links))]);
     }
     coverage_asks_finish(a);
 }

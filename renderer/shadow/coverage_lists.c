@@ -2,18 +2,6 @@
 
 #include "shadow/geometry_kernel.h"
 
-const int8_t coverage_pool[COVERAGE_POOL][2] = {
-    {0, 0}, {1, 0},  {-1, 0}, {0, 1},   {0, -1}, {1, 1},  {-1, 1}, {1, -1},  {-1, -1}, {2, 0},  {-2, 0}, {0, 2},   {0, -2},
-    {2, 1}, {2, -1}, {-2, 1}, {-2, -1}, {1, 2},  {-1, 2}, {1, -2}, {-1, -2}, {2, 2},   {-2, 2}, {2, -2}, {-2, -2},
-};
-
-#define STEP(x, y) ((y)*WINDOW_SIDE + (x))
-const int16_t coverage_window_step[COVERAGE_POOL] = {
-    STEP(0, 0),  STEP(1, 0),  STEP(-1, 0),  STEP(0, 1),  STEP(0, -1), STEP(1, 1),  STEP(-1, 1),  STEP(1, -1),  STEP(-1, -1),
-    STEP(2, 0),  STEP(-2, 0), STEP(0, 2),   STEP(0, -2), STEP(2, 1),  STEP(2, -1), STEP(-2, 1),  STEP(-2, -1), STEP(1, 2),
-    STEP(-1, 2), STEP(1, -2), STEP(-1, -2), STEP(2, 2),  STEP(-2, 2), STEP(2, -2), STEP(-2, -2),
-};
-
 /* At the map's ends. */
 static void load_singly(struct coverage_window *w)
 {

@@ -17,7 +17,10 @@
 /* Texels whose triangles a list may link, relative: the texel itself, the eight around (the paper's), and the sixteen around those, which
  * fill the places that the eight leave free. */
 enum { COVERAGE_RING = 9, COVERAGE_POOL = 25 };
-extern const int8_t coverage_pool[COVERAGE_POOL][2];
+static const int8_t coverage_pool[COVERAGE_POOL][2] = {
+    {0, 0}, {1, 0},  {-1, 0}, {0, 1},   {0, -1}, {1, 1},  {-1, 1}, {1, -1},  {-1, -1}, {2, 0},  {-2, 0}, {0, 2},   {0, -2},
+    {2, 1}, {2, -1}, {-2, 1}, {-2, -1}, {1, 2},  {-1, 2}, {1, -2}, {-1, -2}, {2, 2},   {-2, 2}, {2, -2}, {-2, -2},
+};
 
 /* A list, kept in the map's notes: bit k links texel coverage_pool[k]; of more than these bits it says that it was made. */
 #define COVERAGE_LINKS 0x01ffffffu
@@ -32,12 +35,16 @@ struct coverage_window {
     uint32_t id[WINDOW_SIDE * WINDOW_SIDE]; /* MAP_OFF_EDGE taken off; MAP_NONE */
 };
 
-/* Texel (x, y) of the tile in the window; link k's is at coverage_window_step[k] from it. */
+/* Texel (x, y) of the tile in the window. */
 static inline size_t coverage_window_at(uint32_t x, uint32_t y)
 {
     return (size_t)(y + WINDOW_AROUND) * WINDOW_SIDE + x + WINDOW_AROUND;
 }
-extern const int16_t coverage_window_step[COVERAGE_POOL];
+/* From a texel's place in the window to that of link k. */
+static inline ptrdiff_t coverage_window_step(unsigned k)
+{
+    return coverage_pool[k][1] * (ptrdiff_t)WINDOW_SIDE + coverage_pool[k][0];
+}
 
 /* Of the tile that holds texel (x, y). */
 void coverage_window_open(struct coverage_window *w, const struct geometry_map *m, uint32_t x, uint32_t y);

@@ -1,8 +1,6 @@
 /* Lists of some texels (coverage_lists.h), eight candidates at a time. Included by the kernels only (geometry_plain.c, geometry_avx2.c). */
 #pragma once
 
-#include <string.h>
-
 #include "base/lanes.h"
 #include "shadow/coverage_lists.h"
 #include "shadow/light_lanes.h"
@@ -45,126 +43,129 @@ static int wild_corners_held(const struct geometry_map *m, uint32_t id, uint32_t
     return held ? held : -1;
 }
 
-/* What a texel's list may hold: triangles that it or a neighbour keeps. */
+/* A texel at work: triangles that it or a neighbour keeps, and that its list may hold. */
 struct candidates {
-    uint32_t tried[COVERAGE_POOL + LANES]; /* each once; the texel's own first */
-    unsigned tried_count;
-    unsigned count; /* those that touch the texel, its own included */
-    uint32_t claim
-        [8]; /* links to those that hold so many (0..4) of the texel's corners; its own not among them; 7: that do not touch it */
+    float x, y;     /* its centre */
+    unsigned count; /* those that touch it, its own included */
+    uint32_t
+        claim[8]; /* links to those that hold so many (0..4) of its corners; its own not among them; 7: that do not touch it */
 };
 
-/* Candidates to be judged. */
+/* Candidates to be judged. The last texel is nobody's: it fills the last eight. */
 struct claims {
     const struct coverage_texels *texels;
     uint32_t hint;
-    struct candidates of[LISTS_TEXELS];
+    struct candidates of[LISTS_TEXELS + 1];
     unsigned count;
     uint32_t id[(LISTS_TEXELS + 1) * LANES];
     uint8_t texel[(LISTS_TEXELS + 1) * LANES], link[(LISTS_TEXELS + 1) * LANES];
 };
 
-/* Those of eight ids that are none's, known, or another's before. */
-LANES_INLINE unsigned fresh_ones(const struct candidates *c, lane_ints ids)
+/* Of links [first, first + 8) those to triangles that no link before leads to. `at`: the texel in the window. */
+LANES_INLINE unsigned fresh_links(const uint32_t *at, unsigned first)
 {
+#define LINKED(k) ((int32_t)at[coverage_window_step(k)])
     const lane_ints number = {0, 1, 2, 3, 4, 5, 6, 7};
-    lane_ints fresh = ids != (int32_t)MAP_NONE;
-    for (unsigned k = 0; k < c->tried_count; k++)
-        fresh &= ids != (int32_t)c->tried[k];
+    lane_ints ids = {LINKED(first),     LINKED(first + 1), LINKED(first + 2), LINKED(first + 3),
+                     LINKED(first + 4), LINKED(first + 5), LINKED(first + 6), LINKED(first + 7)};
+    lane_ints fresh = (ids != (int32_t)MAP_NONE) & (ids != LINKED(0));
     if (!lanes_bits(fresh))
         return 0;
+#pragma GCC unroll 32
+    for (unsigned k = 1; k < first; k++)
+        fresh &= ids != LINKED(k);
 #pragma GCC unroll 8
     for (int k = 0; k < LANES - 1; k++)
-        fresh &= (ids != ids[k]) | (number <= k);
+        fresh &= (ids != LINKED(first + (unsigned)k)) | (number <= k);
     return lanes_bits(fresh);
+#undef LINKED
 }
 
 /* Links [first, first + 8) of a texel. No branches: what is not fresh is written over. */
 LANES_INLINE void put_candidates(struct claims *q, unsigned texel, unsigned first)
 {
-    const struct coverage_window *w = q->texels->window;
-    struct candidates *c = &q->of[texel];
-    unsigned t = q->texels->texel[texel];
-    const uint32_t *at = w->id + coverage_window_at(t % MAP_TILE, t / MAP_TILE);
-    uint32_t ids[LANES];
-#pragma GCC unroll 8
-    for (unsigned k = 0; k < LANES; k++)
-        ids[k] = at[coverage_window_step[first + k]];
-    unsigned fresh = fresh_ones(c, lane_ints_load(ids));
+    unsigned t = q->texels->texel[texel], count = q->count;
+    const uint32_t *at = q->texels->window->id + coverage_window_at(t % MAP_TILE, t / MAP_TILE);
+    unsigned fresh = fresh_links(at, first);
     if (!fresh)
         return;
 #pragma GCC unroll 8
     for (unsigned k = 0; k < LANES; k++) {
-        c->tried[c->tried_count] = q->id[q->count] = ids[k];
-        q->texel[q->count] = (uint8_t)texel;
-        q->link[q->count] = (uint8_t)(first + k);
-        c->tried_count += fresh >> k & 1;
-        q->count += fresh >> k & 1;
+        q->id[count] = at[coverage_window_step(first + k)];
+        q->texel[count] = (uint8_t)texel;
+        q->link[count] = (uint8_t)(first + k);
+        count += fresh >> k & 1;
     }
+    q->count = count;
 }
 
-/* Eight candidates' indices, or corners. */
-LANES_INLINE void prefetch_eight(struct claims *q, unsigned first, bool corners)
+static void prefetch_indices(struct claims *q, unsigned first)
 {
-    const struct light_mesh *m = &q->texels->window->map->mesh;
-    for (unsigned k = first; k < first + LANES && k < q->count; k++) {
-        const struct light_part *part = light_mesh_part(m, q->id[k], &q->hint);
-        if (corners)
-            light_part_prefetch_vertices(part, q->id[k]);
-        else
-            light_part_prefetch_indices(part, q->id[k]);
-    }
+    for (unsigned k = first; k < first + LANES && k < q->count; k++)
+        light_part_prefetch_indices(light_mesh_part(&q->texels->window->map->mesh, q->id[k], &q->hint), q->id[k]);
 }
 
-/* Corners held by eight candidates from number `first` on, which may repeat. */
-LANES_INLINE void judge_eight(struct claims *q, unsigned first, int32_t held[LANES])
+/* Eight candidates' corners, asked for early. */
+LANES_INLINE void find_corners(struct claims *q, unsigned first, struct light_triangle t[LANES])
 {
-    const struct coverage_window *w = q->texels->window;
-    struct light_triangle t[LANES];
-    struct light_lanes c;
-    uint32_t x[LANES], y[LANES];
 #pragma GCC unroll 8
     for (unsigned i = 0; i < LANES; i++) {
-        uint32_t id = q->id[first + i], texel = q->texels->texel[q->texel[first + i]];
-        t[i] = light_part_triangle(light_mesh_part(&w->map->mesh, id, &q->hint), id);
-        x[i] = w->left + texel % MAP_TILE;
-        y[i] = w->top + texel / MAP_TILE;
+        uint32_t id = q->id[first + i];
+        t[i] = light_part_triangle(light_mesh_part(&q->texels->window->map->mesh, id, &q->hint), id);
+        for (int k = 0; k < 3; k++)
+            __builtin_prefetch(t[i].corner[k]);
     }
+}
+
+/* Corners held by eight candidates from number `first` on. */
+LANES_INLINE void judge_eight(struct claims *q, unsigned first, const struct light_triangle t[LANES], int32_t held[LANES])
+{
+    struct light_lanes c;
+    lanes x, y;
     light_lanes_load(t, &c);
-    lanes left = lanes_from(lane_ints_load(x)) + 0.5f, top = lanes_from(lane_ints_load(y)) + 0.5f;
+#pragma GCC unroll 8
+    for (unsigned i = 0; i < LANES; i++) {
+        x[i] = q->of[q->texel[first + i]].x;
+        y[i] = q->of[q->texel[first + i]].y;
+    }
     for (int k = 0; k < 3; k++) {
-        c.x[k] -= left;
-        c.y[k] -= top;
+        c.x[k] -= x;
+        c.y[k] -= y;
     }
     lane_ints_store(held, corners_held(c.x, c.y));
     lanes sum = c.x[0] + c.x[1] + c.x[2];
     for (unsigned odd = lanes_bits(sum != sum); odd; odd &= odd - 1) {
         unsigned i = (unsigned)__builtin_ctz(odd);
-        held[i] = wild_corners_held(w->map, q->id[first + i], x[i], y[i]);
+        const struct candidates *texel = &q->of[q->texel[first + i]];
+        held[i] = wild_corners_held(q->texels->window->map, q->id[first + i], (uint32_t)texel->x, (uint32_t)texel->y);
     }
 }
 
-enum { INDICES_AHEAD = 8 * LANES, CORNERS_AHEAD = 3 * LANES };
+enum { INDICES_AHEAD = 8 * LANES, GROUPS_AHEAD = 4 };
 
 LANES_INLINE void judge(struct claims *q)
 {
-    for (unsigned first = 0; first < INDICES_AHEAD; first += LANES)
-        prefetch_eight(q, first, false);
-    for (unsigned first = 0; first < CORNERS_AHEAD; first += LANES)
-        prefetch_eight(q, first, true);
-    for (unsigned end = q->count; end % LANES; end++) {
-        q->id[end] = q->id[0];
-        q->texel[end] = q->texel[0];
+    struct light_triangle ahead[GROUPS_AHEAD][LANES];
+    for (unsigned k = 0; k < LANES; k++) {
+        q->id[q->count + k] = q->id[0];
+        q->texel[q->count + k] = LISTS_TEXELS;
     }
-    for (unsigned first = 0; first < q->count; first += LANES) {
+    for (unsigned first = 0; first < INDICES_AHEAD; first += LANES)
+        prefetch_indices(q, first);
+    for (unsigned group = 0; group < GROUPS_AHEAD - 1 && group * LANES < q->count; group++)
+        find_corners(q, group * LANES, ahead[group]);
+    for (unsigned group = 0; group * LANES < q->count; group++) {
+        unsigned first = group * LANES, next = group + GROUPS_AHEAD - 1;
         int32_t held[LANES];
-        prefetch_eight(q, first + INDICES_AHEAD, false);
-        prefetch_eight(q, first + CORNERS_AHEAD, true);
-        judge_eight(q, first, held);
-        for (unsigned i = 0; i < LANES && first + i < q->count; i++) {
+        prefetch_indices(q, first + INDICES_AHEAD);
+        if (next * LANES < q->count)
+            find_corners(q, next * LANES, ahead[next % GROUPS_AHEAD]);
+        judge_eight(q, first, ahead[group % GROUPS_AHEAD], held);
+#pragma GCC unroll 8
+        for (unsigned i = 0; i < LANES; i++) {
             struct candidates *c = &q->of[q->texel[first + i]];
             c->count += held[i] >= 0;
-            c->claim[held[i] & 7] |= 1u << q->link[first + i];
+            c->claim[held[i] & 7] |= 1u << (q->link[first + i] & 31);
         }
     }
     q->count = 0;
@@ -192,28 +193,35 @@ static uint32_t choose_links(const struct candidates *c, unsigned places)
     return list;
 }
 
-static void begin(struct claims *q, struct coverage_texels *t)
+static void begin(struct claims *q, const struct coverage_texels *t)
 {
     q->texels = t;
     q->hint = q->count = 0;
+    q->of[LISTS_TEXELS] = (struct candidates){0};
     for (unsigned k = 0; k < t->count; k++) {
-        struct candidates *c = &q->of[k];
-        c->tried[0] = t->window->id[coverage_window_at(t->texel[k] % MAP_TILE, t->texel[k] / MAP_TILE)];
-        c->tried_count = c->count = 1;
-        memset(c->claim, 0, sizeof c->claim);
+        float x = (float)(t->window->left + t->texel[k] % MAP_TILE), y = (float)(t->window->top + t->texel[k] / MAP_TILE);
+        q->of[k] = (struct candidates){.x = x + 0.5f, .y = y + 0.5f, .count = 1};
     }
 }
 
-/* The texel's own triangle comes first, whatever it holds; the second ring only where the first leaves places free. */
+/* Links [first, first + 8) of all texels that have places left. */
+LANES_INLINE void add_links(struct claims *q, unsigned first)
+{
+    for (unsigned k = 0; k < q->texels->count; k++)
+        if (first < COVERAGE_RING || q->of[k].count < q->texels->nodes)
+            put_candidates(q, k, first);
+    judge(q);
+}
+
+/* A texel's own triangle comes first, whatever it holds; the second ring only where the first leaves places free. */
 static void make_lists(struct coverage_texels *t)
 {
     struct claims q;
     begin(&q, t);
-    for (unsigned first = 1; first < t->pool; first += LANES) {
-        for (unsigned k = 0; k < t->count; k++)
-            if (first < COVERAGE_RING || q.of[k].count < t->nodes)
-                put_candidates(&q, k, first);
-        judge(&q);
+    add_links(&q, 1);
+    if (t->pool > COVERAGE_RING) {
+        add_links(&q, COVERAGE_RING);
+        add_links(&q, COVERAGE_RING + LANES);
     }
     for (unsigned k = 0; k < t->count; k++)
         t->lists[k] = COVERAGE_MADE | 1 | choose_links(&q.of[k], t->nodes - 1);
