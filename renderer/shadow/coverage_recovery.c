@@ -11,36 +11,29 @@ static const uint32_t *across(const struct coverage_asks *a, const struct light_
     return a->adjacency->across + (part->indices - a->map->mesh.scene->indices) + 3 * (size_t)(id - part->first_triangle);
 }
 
-/* One edge on. False: the way ends. */
+/* Way `w` goes one edge on. Whether it leads further is said without a branch: it is anyone's guess, here and where it arrives. */
 static bool step(struct coverage_asks *a, struct coverage_way *w)
 {
     const struct light_part *part = light_mesh_part(&a->map->mesh, w->triangle, &a->hint);
-    uint32_t next = across(a, part, w->triangle)[w->beyond];
-    if (next == SCENE_NONE || next + part->first_triangle == w->before)
-        return false;
+    uint32_t next = across(a, part, w->triangle)[w->beyond], id = next + part->first_triangle;
+    bool ends = (next == SCENE_NONE) | (id == w->before) | ((a->known[w->point] & POINT_DARK) != 0);
+    bool own = !ends & (id == a->points[w->point].id), on = !ends & !own;
+    a->known[w->point] |= own ? POINT_HELD : 0;
     w->before = w->triangle;
-    w->triangle = next + part->first_triangle;
-    if (w->triangle == a->points[w->point].id) {
-        a->known[w->point] |= POINT_HELD;
-        return false;
-    }
+    w->triangle = on ? id : w->triangle;
     light_part_prefetch_indices(part, w->triangle);
-    return true;
+    return on;
 }
 
 /* Where way `w` has come, looked at: `k` of `l`. False: it ends. */
 static bool arrive(struct coverage_asks *a, struct coverage_way *w, const struct map_looks *l, unsigned k)
 {
-    if (w->area * l->area[k] < 0) /* folded over: the point lies beyond an outline */
-        return false;
-    if (l->beyond[k] < 0) {
-        if (l->holds >> k & 1)
-            a->known[w->point] |= l->before >> k & 1 ? POINT_DARK : POINT_HELD;
-        return false;
-    }
+    bool folded = w->area * l->area[k] < 0; /* the point lies beyond an outline */
+    bool there = !folded & (l->beyond[k] < 0) & l->holds >> k;
+    a->known[w->point] |= (uint8_t)(there * (l->before >> k & 1 ? POINT_DARK : POINT_HELD));
     w->beyond = l->beyond[k];
     w->area = l->area[k];
-    return true;
+    return !folded & (l->beyond[k] >= 0);
 }
 
 /* Those of `count` ways that lead on move to the front; returns how many. */
@@ -49,12 +42,11 @@ static size_t step_all(struct coverage_asks *a, size_t count)
     size_t open = 0;
     for (size_t i = 0; i < count; i++) {
         struct coverage_way w = a->ways[i];
-        if (i + WAYS_AHEAD < count) {
-            uint32_t later = a->ways[i + WAYS_AHEAD].triangle;
-            __builtin_prefetch(across(a, light_mesh_part(&a->map->mesh, later, &a->hint), later));
-        }
-        if (!(a->known[w.point] & POINT_DARK) && step(a, &w))
-            a->ways[open++] = w;
+        uint32_t later = a->ways[i + WAYS_AHEAD < count ? i + WAYS_AHEAD : i].triangle;
+        __builtin_prefetch(across(a, light_mesh_part(&a->map->mesh, later, &a->hint), later));
+        bool on = step(a, &w);
+        a->ways[open] = w;
+        open += on;
     }
     return open;
 }
@@ -74,8 +66,9 @@ static size_t look_at_all(struct coverage_asks *a, size_t count)
         map_look(a->map, &l, some, &a->hint);
         for (unsigned k = 0; k < some; k++) {
             struct coverage_way w = a->ways[first + k];
-            if (arrive(a, &w, &l, k))
-                a->ways[open++] = w;
+            bool on = arrive(a, &w, &l, k);
+            a->ways[open] = w;
+            open += on;
         }
     }
     return open;
