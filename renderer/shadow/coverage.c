@@ -115,7 +115,7 @@ static void ask_own(const struct some_points *s, const struct coverage_window *w
     for (size_t i = 0; i < s->count; i++) {
         uint32_t at = s->points[i].at;
         __builtin_prefetch(&s->map->notes[at]);
-        coverage_asks_put(a, (uint32_t)i, w->id[coverage_window_at(at % MAP_TILE, at / MAP_TILE % MAP_TILE)]);
+        coverage_asks_put(a, (uint32_t)i, *coverage_window_id(w, at));
     }
     coverage_asks_finish_pairs(a);
 }
@@ -127,7 +127,7 @@ static void ask_lists(const struct some_points *s, const struct coverage_window 
         uint32_t at = s->points[i].at;
         if (a->known[i] & POINT_DARK)
             continue;
-        const uint32_t *id = &w->id[coverage_window_at(at % MAP_TILE, at / MAP_TILE % MAP_TILE)];
+        const uint32_t *id = coverage_window_id(w, at);
         for (uint32_t links = coverage_list(s->map, at) & COVERAGE_LINKS & ~1u; links; links &= links - 1)
             coverage_asks_put(a, (uint32_t)i, id[coverage_window_step((unsigned)__builtin_ctz(links))]);
     }

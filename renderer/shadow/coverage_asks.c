@@ -21,7 +21,8 @@ static void add_answers(struct coverage_asks *a, const struct coverage_pair *pai
     unsigned dark = l->holds & l->before, held = l->holds & l->may_shadow & ~l->before, aside = l->may_shadow & ~l->holds;
     for (unsigned k = 0; k < count; k++) {
         uint32_t point = pairs[k].point;
-        a->known[point] |= (uint8_t)((dark >> k & 1) * POINT_DARK | (held >> k & 1) * POINT_HELD);
+        a->known[point] |=
+            (uint8_t)((dark >> k & 1) * POINT_DARK | (held >> k & 1) * POINT_HELD | (l->holds >> k & 1) * POINT_COVERED);
         a->ways[a->way_count] = (struct coverage_way){point, pairs[k].triangle, SCENE_NONE, l->beyond[k], l->area[k]};
         a->way_count += aside >> k & (l->beyond[k] >= 0);
     }

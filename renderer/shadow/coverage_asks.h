@@ -13,8 +13,9 @@ enum {
 
 /* What is known of a point. */
 enum {
-    POINT_DARK = 1, /* something lies before it */
-    POINT_HELD = 2, /* its own triangle was met, or one that may shadow it holds it and does not */
+    POINT_DARK = 1,    /* something lies before it */
+    POINT_HELD = 2,    /* its own triangle was met, or one that may shadow it holds it and does not */
+    POINT_COVERED = 4, /* a triangle holds it, whatever it may do */
 };
 
 /* A triangle to be asked about a point; or one that was, may shadow the point and does not hold it: the beginning of a way to the one that

@@ -40,6 +40,11 @@ static inline size_t coverage_window_at(uint32_t x, uint32_t y)
 {
     return (size_t)(y + WINDOW_AROUND) * WINDOW_SIDE + x + WINDOW_AROUND;
 }
+/* What texel `at` of cells and notes keeps, one of the tile's. */
+static inline const uint32_t *coverage_window_id(const struct coverage_window *w, size_t at)
+{
+    return &w->id[coverage_window_at(at % MAP_TILE, at / MAP_TILE % MAP_TILE)];
+}
 /* From a texel's place in the window to that of link k. */
 static inline ptrdiff_t coverage_window_step(unsigned k)
 {

@@ -1,31 +1,36 @@
 /* Sub-pixel shadow map (Lecocq, Marvie, Sourimant and Gautron 2014): conservative rasterization, one triangle a texel. A point nearer than all of
  * the texel is lit; one that the texel's triangle holds and lies behind it is shadowed; anything else is uncertain and asks the
  * triangles of the eight texels around. */
+#include "shadow/coverage_asks.h"
 #include "shadow/geometry_maps.h"
 #include "shadow/shared_params.h"
 #include "shadow/surrounded.h"
 
 static const struct param_desc params[] = {SHADOW_MAP_PARAMS};
 
-static bool is_lit(const struct geometry_map *m, const struct map_point *p, uint32_t *hint)
+static void ask_neighbours(struct coverage_asks *a, uint32_t point, const uint32_t *id)
 {
-    uint32_t own = m->cells[p->at].triangle;
-    enum geometry_verdict verdict = geometry_ask(m, own, p, hint);
-    if (verdict == GEOMETRY_BEFORE)
-        return false;
-    bool held = verdict != GEOMETRY_ELSEWHERE;
-    int32_t x = (int32_t)p->x, y = (int32_t)p->y;
-    for (int32_t j = y - 1; j <= y + 1; j++)
-        for (int32_t i = x - 1; i <= x + 1; i++) {
-            uint32_t id = geometry_map_triangle(m, i, j);
-            if (id == MAP_NONE || ((id ^ own) & MAP_ID) == 0)
-                continue;
-            verdict = geometry_ask(m, id, p, hint);
-            if (verdict == GEOMETRY_BEFORE)
-                return false;
-            held |= verdict != GEOMETRY_ELSEWHERE;
-        }
-    return held || !surrounded(m, p, hint);
+    for (unsigned k = 1; k < COVERAGE_RING; k++) {
+        uint32_t other = id[coverage_window_step(k)];
+        if (other != MAP_NONE && other != *id)
+            coverage_asks_put(a, point, other);
+    }
+}
+
+static void decide_some(const struct coverage_window *w, const struct map_point *points, size_t count, float *visibility)
+{
+    struct coverage_asks a;
+    coverage_asks_open(&a, w->map, NULL, points, count);
+    for (size_t i = 0; i < count; i++)
+        coverage_asks_put(&a, (uint32_t)i, *coverage_window_id(w, points[i].at));
+    coverage_asks_finish(&a);
+    for (size_t i = 0; i < count; i++)
+        if (!(a.known[i] & POINT_DARK))
+            ask_neighbours(&a, (uint32_t)i, coverage_window_id(w, points[i].at));
+    coverage_asks_finish(&a);
+    for (size_t i = 0; i < count; i++)
+        if (a.known[i] & POINT_DARK || (!(a.known[i] & (POINT_HELD | POINT_COVERED)) && surrounded(w->map, &points[i], &a.hint)))
+            visibility[points[i].pixel] = 0;
 }
 
 static void decide(void *state, const struct geometry_map *m, const struct map_point *points, size_t count, const double *values,
@@ -33,10 +38,10 @@ static void decide(void *state, const struct geometry_map *m, const struct map_p
 {
     (void)state;
     (void)values;
-    uint32_t hint = 0;
-    for (size_t i = 0; i < count; i++)
-        if (!is_lit(m, &points[i], &hint))
-            visibility[points[i].pixel] = 0;
+    struct coverage_window w;
+    coverage_window_open(&w, m, (uint32_t)points->x, (uint32_t)points->y);
+    for (size_t first = 0; first < count; first += ASKS_POINTS)
+        decide_some(&w, points + first, count - first < ASKS_POINTS ? count - first : ASKS_POINTS, visibility);
 }
 
 static bool prepare(void *state, const struct shadow_input *in, struct error *err)

@@ -335,6 +335,7 @@ static unsigned ask_singly(const struct geometry_map *m, const uint32_t *ids, un
         bool may = light_triangle_wild(&t);
         for (int k = 0; k < 3; k++)
             may |= geometry_before(m, t.corner[k]->n, p->n);
+        known |= verdict == GEOMETRY_BEHIND || verdict == GEOMETRY_BEFORE ? POINT_COVERED : 0;
         if (verdict == GEOMETRY_OWN || (may && verdict == GEOMETRY_BEHIND))
             known |= POINT_HELD;
         else if (verdict == GEOMETRY_BEFORE)
