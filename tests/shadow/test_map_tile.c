@@ -1,4 +1,4 @@
-/* The kernels that rasterize a geometry map's tiles (shadow/map_tile.h): the same bits whatever the instruction set. */
+/* The kernels that rasterize a geometry map's tiles (shadow/map_tile.h): the same bits whatever the instruction set, and every touched texel marked. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/job_pool.h"
 #include "made_scene.h"
+#include "shadow/conservative.h"
 #include "shadow/fit.h"
 #include "shadow/map_tile.h"
 
@@ -85,21 +86,29 @@ static size_t check_kernel(const struct made_map *made, map_tile_kernel *kernel,
     return held;
 }
 
+/* Those that this machine runs; returns how many. */
+static size_t list_kernels(map_tile_kernel *kernels[3])
+{
+    size_t count = 0;
+    kernels[count++] = map_tile_plain;
+#ifdef __x86_64__
+    if (map_tile_avx2 && __builtin_cpu_supports("avx2"))
+        kernels[count++] = map_tile_avx2;
+    if (map_tile_avx512 && __builtin_cpu_supports("avx512f"))
+        kernels[count++] = map_tile_avx512;
+#endif
+    return count;
+}
+
 static void check_scene(const char *name, enum light_kind kind)
 {
     struct made_map made = make_map(name, kind);
-    map_tile_kernel *const kernels[] = {map_tile_plain, map_tile_avx2, map_tile_avx512, map_tile_choose()};
-#ifdef __x86_64__
-    const bool runs[] = {true, __builtin_cpu_supports("avx2"), __builtin_cpu_supports("avx512f"), true};
-#else
-    const bool runs[] = {true, false, false, true};
-#endif
-    for (size_t k = 0; k < 4; k++)
-        if (kernels[k] && runs[k]) {
-            assert_true(check_kernel(&made, kernels[k], made.count) > 100);
-            check_kernel(&made, kernels[k], 0);
-            check_kernel(&made, kernels[k], made.count / 2);
-        }
+    map_tile_kernel *kernels[3];
+    for (size_t k = list_kernels(kernels); k-- > 0;) {
+        assert_true(check_kernel(&made, kernels[k], made.count) > 100);
+        check_kernel(&made, kernels[k], 0);
+        check_kernel(&made, kernels[k], made.count / 2);
+    }
     finish_map(&made);
 }
 
@@ -114,8 +123,74 @@ static void test_kernels_make_the_same_bits(void **state)
     check_scene("builtin:hard-19-cards", LIGHT_POINT);
 }
 
+/* Bits of the texels that `t`, alone, touches in rows of a tile. */
+static void touch_tile(const struct light_triangle *t, uint32_t tile_x, uint32_t tile_y, uint32_t rows[MAP_TILE])
+{
+    float x[3], y[3];
+    struct conservative over;
+    memset(rows, 0, MAP_TILE * sizeof *rows);
+    for (int k = 0; k < 3; k++) {
+        x[k] = t->corner[k]->x - (float)(tile_x * MAP_TILE);
+        y[k] = t->corner[k]->y - (float)(tile_y * MAP_TILE);
+    }
+    if (conservative_setup(&over, x, y, MAP_TILE, MAP_TILE))
+        for (int32_t row = 0; row < (int32_t)MAP_TILE; row++)
+            for (int32_t column = 0; column < (int32_t)MAP_TILE; column += CONSERVATIVE_LANES)
+                rows[row] |= conservative_row(&over, column, row) << column;
+}
+
+/* Returns how many texels triangle `id` touches; fails where `kernel` marks other ones. */
+static size_t check_triangle(const struct made_map *made, map_tile_kernel *kernel, uint32_t id)
+{
+    const struct geometry_map *m = &made->map;
+    static struct map_cell cells[CELLS];
+    uint32_t hint = 0, expected[MAP_TILE];
+    const struct light_part *part = light_mesh_part(&m->mesh, id, &hint);
+    struct light_triangle t = light_part_triangle(part, id);
+    size_t count = 0;
+    if (light_part_degenerate(m->mesh.scene, part, id))
+        return 0;
+    for (uint32_t y = 0; y < m->tiles; y++)
+        for (uint32_t x = 0; x < m->tiles; x++) {
+            touch_tile(&t, x, y, expected);
+            kernel(m, x, y, &id, 1, 1, cells);
+            for (size_t i = 0; i < CELLS; i++) {
+                bool touched = expected[i / MAP_TILE] >> i % MAP_TILE & 1;
+                assert_int_equal(touched, cells[i].triangle != MAP_NONE);
+                count += touched;
+            }
+        }
+    return count;
+}
+
+static void check_alone(const char *name, enum light_kind kind)
+{
+    struct made_map made = make_map(name, kind);
+    map_tile_kernel *kernels[3];
+    size_t step = made.count / 60 + 1;
+    assert_true(made.map.wild_count == 0);
+    for (size_t k = list_kernels(kernels); k-- > 0;) {
+        size_t touched = 0;
+        for (size_t i = 0; i < made.count; i += step)
+            touched += check_triangle(&made, kernels[k], made.triangles[i]);
+        assert_true(touched > 100);
+    }
+    finish_map(&made);
+}
+
+static void test_a_triangle_alone_marks_what_it_touches(void **state)
+{
+    (void)state;
+    check_alone("builtin:ball", LIGHT_DIRECTIONAL);
+    check_alone("builtin:hard-03-sliver", LIGHT_DIRECTIONAL);
+    check_alone("builtin:hard-03-sliver", LIGHT_POINT);
+    check_alone("builtin:hard-04-contact", LIGHT_SPOT);
+    check_alone("builtin:butterfly", LIGHT_POINT);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kernels_make_the_same_bits)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kernels_make_the_same_bits),
+                                       cmocka_unit_test(test_a_triangle_alone_marks_what_it_touches)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
