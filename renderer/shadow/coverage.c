@@ -1,9 +1,11 @@
 /* Sub-pixel coverage (Li, Yang, Han and Zhao 2017, "Coverage Detecting Algorithm Based on Sub-Pixel Geometric Primitives"): SPSM's map, and for each
  * texel a list of the triangles that neighbouring texels keep and that lie over this one too. docs/coverage.md goes through it step by step. */
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/error.h"
+#include "gl/timer.h"
 #include "shadow/coverage_asks.h"
 #include "shadow/coverage_lists.h"
 #include "shadow/coverage_packed.h"
@@ -48,6 +50,9 @@ static const struct param_desc params[] = {
 struct state {
     struct geometry_maps maps;
     struct adjacency adjacency; /* with recovery */
+    /* Of the last frame; a list that two threads make at once counts twice. */
+    _Atomic uint32_t lists_made;
+    _Atomic uint64_t lists_ns; /* of all threads */
 };
 
 /* Packed lists are as long as their links allow. */
@@ -61,7 +66,7 @@ static unsigned pool_of(const double *values) { return values[PARAM_LAYOUT] == L
 
 /* Some of a tile's points and what the thread that decides them works with. */
 struct some_points {
-    const struct state *state;
+    struct state *state;
     const struct geometry_map *map;
     const struct map_point *points;
     size_t count;
@@ -71,16 +76,21 @@ struct some_points {
 /* Of points that are not known to be dark. */
 static void make_lists(const struct some_points *s, const uint8_t *known, struct coverage_window *w)
 {
-    uint32_t wanted[MAP_TILE] = {0}, any = 0;
+    uint32_t wanted[MAP_TILE] = {0}, made = 0;
     for (size_t i = 0; i < s->count; i++) {
         const struct map_point *p = &s->points[i];
-        if (known[i] & POINT_DARK || coverage_list(s->map, p->at))
+        uint32_t *row = &wanted[p->at / MAP_TILE % MAP_TILE], bit = 1u << p->at % MAP_TILE;
+        if (known[i] & POINT_DARK || *row & bit || coverage_list(s->map, p->at))
             continue;
-        wanted[p->at / MAP_TILE % MAP_TILE] |= 1u << p->at % MAP_TILE;
-        any = 1;
+        *row |= bit;
+        made++;
     }
-    if (any)
-        coverage_lists_make(w, wanted, nodes_of(s->params), pool_of(s->params));
+    if (!made)
+        return;
+    double start = clock_ms();
+    coverage_lists_make(w, wanted, nodes_of(s->params), pool_of(s->params));
+    atomic_fetch_add_explicit(&s->state->lists_made, made, memory_order_relaxed);
+    atomic_fetch_add_explicit(&s->state->lists_ns, (uint64_t)((clock_ms() - start) * 1e6), memory_order_relaxed);
 }
 
 /* No ids, so no way over the mesh: what recovery there is, is surrounded(). */
@@ -171,6 +181,8 @@ static bool prepare(void *state, const struct shadow_input *in, struct error *er
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)
 {
     struct state *s = state;
+    s->lists_made = 0;
+    s->lists_ns = 0;
     return geometry_maps_resolve(&s->maps, in, decide, s, err);
 }
 
@@ -187,7 +199,15 @@ static size_t bytes(const void *state)
     return geometry_maps_bytes(&s->maps) + s->adjacency.count * sizeof *s->adjacency.across;
 }
 
-/* Makes the lists of all texels of map i. */
+static size_t figures(const void *state, struct shadow_figure *out)
+{
+    const struct state *s = state;
+    out[0] = (struct shadow_figure){"lists_made", s->lists_made};
+    out[1] = (struct shadow_figure){"lists_ms", (double)s->lists_ns * 1e-6};
+    return 2;
+}
+
+/* Makes the lists of all texels of a map. */
 static void make_all_lists(const struct geometry_map *m, const double *values)
 {
     struct coverage_window w;
@@ -248,4 +268,5 @@ const struct shadow_system shadow_coverage = {
     .finish = finish,
     .bytes = bytes,
     .read_lists = read_lists,
+    .figures = figures,
 };

@@ -67,6 +67,35 @@ static size_t count_states(const struct set *set)
     return n;
 }
 
+static double lists_made(struct set *set)
+{
+    struct shot shot = shot_take(&studio, set);
+    double made = shot.info.figure_count > 0 ? shot.info.figures[0].value : -1;
+    shot_drop(&shot);
+    return made;
+}
+
+/* A camera that moves makes the lists that it newly reads, a light all. */
+static void test_what_lists_are_made(void **state)
+{
+    (void)state;
+    struct set set = set_load(&studio, "builtin:ball");
+    set_use(&set, "coverage:size=64");
+    set.settings.width = 384;
+    set.settings.height = 256;
+    double first = lists_made(&set);
+    assert_true(first > 100);
+    assert_true(lists_made(&set) == 0);
+    set.settings.camera.eye.x += 0.05;
+    double added = lists_made(&set);
+    assert_true(added > 0 && added < first / 4);
+    set.settings.camera.eye.x -= 0.05;
+    assert_true(lists_made(&set) == 0);
+    set.settings.lights[0] = light_turned(set.scene, &set.settings.lights[0], 0.25);
+    assert_true(lists_made(&set) > first / 2);
+    set_strike(&set);
+}
+
 /* States that no frame asks for are freed; a moving light keeps one. */
 static void test_states_are_freed(void **state)
 {
@@ -293,10 +322,15 @@ static void test_empty_scenes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_rebuilds),    cmocka_unit_test(test_states_are_freed),
-        cmocka_unit_test(test_ring_keeps_order), cmocka_unit_test(test_wrong_sizes_are_refused),
-        cmocka_unit_test(test_more_samples),     cmocka_unit_test(test_float_pictures_are_linear),
-        cmocka_unit_test(test_every_show),       cmocka_unit_test(test_empty_scenes),
+        cmocka_unit_test(test_what_rebuilds),
+        cmocka_unit_test(test_what_lists_are_made),
+        cmocka_unit_test(test_states_are_freed),
+        cmocka_unit_test(test_ring_keeps_order),
+        cmocka_unit_test(test_wrong_sizes_are_refused),
+        cmocka_unit_test(test_more_samples),
+        cmocka_unit_test(test_float_pictures_are_linear),
+        cmocka_unit_test(test_every_show),
+        cmocka_unit_test(test_empty_scenes),
     };
     if (!studio_open(&studio, NULL, NULL))
         return 77;
