@@ -2,7 +2,6 @@
  * texel a list of the triangles that neighbouring texels keep and that lie over this one too. docs/coverage.md goes through it step by step. */
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "gl/timer.h"

@@ -14,7 +14,7 @@
 /* Longest list that the links allow, the texel's own triangle included. */
 enum { COVERAGE_PACKED_NODES = 4 };
 
-/* geometry_ask() of the triangle that texel (x, y) keeps, `at` in the map, as sixteen bytes tell it: inside by packed coordinates, depth by eq. 4
+/* What the triangle says that texel (x, y) keeps, `at` in the map, as sixteen bytes tell it: inside by packed coordinates, depth by eq. 4
  * with c at the texel's centre and z~ the texel's minimum. */
 enum geometry_verdict coverage_packed_ask(const struct geometry_map *m, uint32_t x, uint32_t y, size_t at,
                                           const struct map_point *p, uint32_t *hint);

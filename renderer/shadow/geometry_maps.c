@@ -40,17 +40,6 @@ size_t geometry_maps_bytes(const struct geometry_maps *g)
     return sum;
 }
 
-enum geometry_verdict geometry_ask(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint)
-{
-    id &= MAP_ID;
-    if (id == p->id)
-        return GEOMETRY_OWN;
-    struct light_hit hit;
-    if (!light_triangle_solid_hit(&m->mesh, light_mesh_part(&m->mesh, id, hint), id, p->x, p->y, &hit))
-        return GEOMETRY_ELSEWHERE;
-    return geometry_before(m, hit.n, p->n) ? GEOMETRY_BEFORE : GEOMETRY_BEHIND;
-}
-
 struct decide_job {
     const struct geometry_maps *maps;
     geometry_decide *decide;

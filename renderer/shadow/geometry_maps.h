@@ -35,11 +35,10 @@ static inline bool geometry_before(const struct geometry_map *m, float occluder,
     return occluder > n + 0x1p-20f * (occluder > 0 ? occluder : -occluder) + m->mesh.rounding;
 }
 
-/* What triangle `id` (MAP_OFF_EDGE allowed) says about the point. */
+/* What a triangle says about a point. */
 enum geometry_verdict {
     GEOMETRY_ELSEWHERE, /* its projection does not hold the point, or has a hole there */
     GEOMETRY_BEHIND,    /* holds it, and is not before it */
     GEOMETRY_OWN,       /* is the point's own triangle */
     GEOMETRY_BEFORE,    /* shadows it */
 };
-enum geometry_verdict geometry_ask(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint);

@@ -321,6 +321,17 @@ static void test_recovery_finds_what_no_texel_kept(void **state)
     scene_destroy(scene);
 }
 
+static enum geometry_verdict ask_one(const struct geometry_map *m, uint32_t id, const struct map_point *p, uint32_t *hint)
+{
+    id &= MAP_ID;
+    if (id == p->id)
+        return GEOMETRY_OWN;
+    struct light_hit hit;
+    if (!light_triangle_solid_hit(&m->mesh, light_mesh_part(&m->mesh, id, hint), id, p->x, p->y, &hit))
+        return GEOMETRY_ELSEWHERE;
+    return geometry_before(m, hit.n, p->n) ? GEOMETRY_BEFORE : GEOMETRY_BEHIND;
+}
+
 /* What the triangles say one by one: known, and how many ways begin. */
 static unsigned ask_singly(const struct geometry_map *m, const uint32_t *ids, unsigned count, const struct map_point *p,
                            size_t *ways)
@@ -329,7 +340,7 @@ static unsigned ask_singly(const struct geometry_map *m, const uint32_t *ids, un
     uint32_t hint = 0;
     *ways = 0;
     for (unsigned i = 0; i < count; i++) {
-        enum geometry_verdict verdict = geometry_ask(m, ids[i], p, &hint);
+        enum geometry_verdict verdict = ask_one(m, ids[i], p, &hint);
         struct light_triangle t = light_part_triangle(light_mesh_part(&m->mesh, ids[i], &hint), ids[i]);
         struct light_sides s = light_triangle_sides(&m->mesh, light_mesh_part(&m->mesh, ids[i], &hint), ids[i], p->x, p->y);
         bool may = light_triangle_wild(&t);
