@@ -49,7 +49,7 @@ static const struct param_desc params[] = {
 struct state {
     struct geometry_maps maps;
     struct adjacency adjacency; /* with recovery */
-    /* Of the last frame; a list that two threads make at once counts twice. */
+    /* Of the last frame. */
     _Atomic uint32_t lists_made;
     _Atomic uint64_t lists_ns; /* of all threads */
 };
@@ -75,19 +75,18 @@ struct some_points {
 /* Of points that are not known to be dark. */
 static void make_lists(const struct some_points *s, const uint8_t *known, struct coverage_window *w)
 {
-    uint32_t wanted[MAP_TILE] = {0}, made = 0;
+    uint32_t wanted[MAP_TILE] = {0}, any = 0;
     for (size_t i = 0; i < s->count; i++) {
         const struct map_point *p = &s->points[i];
-        uint32_t *row = &wanted[p->at / MAP_TILE % MAP_TILE], bit = 1u << p->at % MAP_TILE;
-        if (known[i] & POINT_DARK || *row & bit || coverage_list(s->map, p->at))
+        if (known[i] & POINT_DARK || coverage_list(s->map, p->at))
             continue;
-        *row |= bit;
-        made++;
+        wanted[p->at / MAP_TILE % MAP_TILE] |= 1u << p->at % MAP_TILE;
+        any = 1;
     }
-    if (!made)
+    if (!any)
         return;
     double start = clock_ms();
-    coverage_lists_make(w, wanted, nodes_of(s->params), pool_of(s->params));
+    uint32_t made = coverage_lists_make(w, wanted, nodes_of(s->params), pool_of(s->params));
     atomic_fetch_add_explicit(&s->state->lists_made, made, memory_order_relaxed);
     atomic_fetch_add_explicit(&s->state->lists_ns, (uint64_t)((clock_ms() - start) * 1e6), memory_order_relaxed);
 }

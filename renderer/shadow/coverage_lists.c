@@ -25,27 +25,30 @@ void coverage_window_open(struct coverage_window *w, const struct geometry_map *
         geometry_kernel_choose()->load_window(w);
 }
 
-/* Two threads that make one list at once write the same. */
-static void make_some(struct coverage_texels *t)
+/* Two threads that make one list at once write the same; one of them is the first. Returns how many were new. */
+static uint32_t make_some(struct coverage_texels *t)
 {
+    uint32_t made = 0;
     geometry_kernel_choose()->make_lists(t);
-    for (unsigned k = 0; k < t->count; k++)
-        atomic_store_explicit((_Atomic uint32_t *)&t->window->map->notes[t->window->first + t->texel[k]], t->lists[k],
-                              memory_order_relaxed);
+    for (unsigned k = 0; k < t->count; k++) {
+        _Atomic uint32_t *note = (_Atomic uint32_t *)&t->window->map->notes[t->window->first + t->texel[k]];
+        made += atomic_exchange_explicit(note, t->lists[k], memory_order_relaxed) == 0;
+    }
     t->count = 0;
+    return made;
 }
 
-void coverage_lists_make(struct coverage_window *w, const uint32_t wanted[MAP_TILE], unsigned nodes, unsigned pool)
+uint32_t coverage_lists_make(struct coverage_window *w, const uint32_t wanted[MAP_TILE], unsigned nodes, unsigned pool)
 {
     struct coverage_texels t = {.window = w, .nodes = nodes, .pool = pool};
+    uint32_t made = 0;
     for (uint32_t y = 0; y < MAP_TILE; y++)
         for (uint32_t bits = wanted[y]; bits; bits &= bits - 1) {
             t.texel[t.count++] = (uint16_t)(y * MAP_TILE + (uint32_t)__builtin_ctz(bits));
             if (t.count == LISTS_TEXELS)
-                make_some(&t);
+                made += make_some(&t);
         }
-    if (t.count > 0)
-        make_some(&t);
+    return t.count > 0 ? made + make_some(&t) : made;
 }
 
 unsigned coverage_list_triangles(const struct geometry_map *m, uint32_t x, uint32_t y, uint32_t list,

@@ -55,8 +55,8 @@ static inline ptrdiff_t coverage_window_step(unsigned k)
 void coverage_window_open(struct coverage_window *w, const struct geometry_map *m, uint32_t x, uint32_t y);
 
 /* Makes the lists of the tile's texels whose bit (x % MAP_TILE) of `wanted` (y % MAP_TILE) is set; each keeps a triangle. pool: COVERAGE_RING or
- * COVERAGE_POOL. Several threads may make the same ones. */
-void coverage_lists_make(struct coverage_window *w, const uint32_t wanted[MAP_TILE], unsigned nodes, unsigned pool);
+ * COVERAGE_POOL. Several threads may make the same ones. Returns how many had none before. */
+uint32_t coverage_lists_make(struct coverage_window *w, const uint32_t wanted[MAP_TILE], unsigned nodes, unsigned pool);
 
 /* Texel `at`'s list; 0: it has none. Which texels have depends on the pixels that asked, so nothing that shows may. */
 static inline uint32_t coverage_list(const struct geometry_map *m, size_t at)
