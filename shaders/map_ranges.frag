@@ -1,4 +1,4 @@
-/* Nearest and farthest of the depth texels round a block (shadow/map_ranges.h). STEP 0: of the block's own BLOCK_SIDE x BLOCK_SIDE texels; 1: and of its
+/* Nearest and farthest of the depth texels round a block (shadow/depth/map_ranges.h). STEP 0: of the block's own BLOCK_SIDE x BLOCK_SIDE texels; 1: and of its
  * eight neighbours'. LAYER: the map. */
 #include "blocks.h"
 

@@ -15,8 +15,11 @@
 enum { LANES = 8 };
 typedef float lanes __attribute__((vector_size(32)));
 typedef int32_t lane_ints __attribute__((vector_size(32)));
+typedef uint32_t lane_uints __attribute__((vector_size(32)));
 typedef lanes lanes_anywhere __attribute__((aligned(4), may_alias));
 typedef lane_ints lane_ints_anywhere __attribute__((aligned(4), may_alias));
+
+#define LANES_COUNT ((lanes){0, 1, 2, 3, 4, 5, 6, 7})
 
 #define LANES_INLINE static inline __attribute__((always_inline))
 
@@ -81,10 +84,10 @@ LANES_INLINE lanes lanes_sqrt(lanes a)
 
 LANES_INLINE unsigned lanes_bits(lane_ints mask)
 {
-    unsigned bits = 0;
-    for (int i = 0; i < LANES; i++)
-        bits |= (mask[i] ? 1u : 0u) << i;
-    return bits;
+    typedef int64_t pairs __attribute__((vector_size(32)));
+    pairs powers = (pairs)(mask & (lane_ints){1, 2, 4, 8, 16, 32, 64, 128});
+    int64_t both = powers[0] | powers[1] | powers[2] | powers[3];
+    return (unsigned)(both | both >> 32) & 0xff;
 }
 
 LANES_INLINE lanes lanes_gather(const float *p, lane_ints at)
@@ -107,6 +110,24 @@ LANES_INLINE void lanes_gather_fours(const float *p, lane_ints at, lanes out[4])
 LANES_INLINE lane_ints lane_ints_gather(const void *p, lane_ints at) { return (lane_ints)lanes_gather(p, at); }
 LANES_INLINE lane_ints lane_ints_min(lane_ints a, lane_ints b) { return lane_ints_pick(a < b, a, b); }
 LANES_INLINE lane_ints lane_ints_max(lane_ints a, lane_ints b) { return lane_ints_pick(a > b, a, b); }
+
+LANES_INLINE float larger(float a, float b) { return a > b ? a : b; }
+
+LANES_INLINE float lanes_largest(lanes a)
+{
+    float m = a[0];
+    for (int i = 1; i < LANES; i++)
+        m = a[i] > m ? a[i] : m;
+    return m;
+}
+
+LANES_INLINE float lanes_least(lanes a)
+{
+    float m = a[0];
+    for (int i = 1; i < LANES; i++)
+        m = a[i] < m ? a[i] : m;
+    return m;
+}
 
 LANES_INLINE int32_t lane_ints_sum(lane_ints a) { return a[0] + a[1] + a[2] + a[3] + a[4] + a[5] + a[6] + a[7]; }
 

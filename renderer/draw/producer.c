@@ -8,7 +8,7 @@
  * either side of the line the two are within a few milliseconds. */
 #define RAYS_PER_TRIANGLE 18
 
-/* shadow/map_raster.h takes about 0.02 us a triangle on both cores: at one ray a triangle the two meet. Half as many: its lists take memory that
+/* shadow/depth/map_raster.h takes about 0.02 us a triangle on both cores: at one ray a triangle the two meet. Half as many: its lists take memory that
  * rays do not. */
 #define RAYS_PER_TRIANGLE_ON_CPU 2
 

@@ -16,5 +16,5 @@ bool producer_resolves_on_cpu(const struct draw_scene *scene);
 /* A light's map of `texels`. */
 bool producer_traces_map(const struct draw_scene *scene, size_t texels);
 
-/* The same where the choice is between the tracer and the CPU's own rasterizer (shadow/map_raster.h). */
+/* The same where the choice is between the tracer and the CPU's own rasterizer (shadow/depth/map_raster.h). */
 bool producer_traces_map_on_cpu(const struct draw_scene *scene, size_t texels);

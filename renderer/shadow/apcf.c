@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "shadow/depth_pass.h"
-#include "shadow/light_maps.h"
+#include "shadow/depth/depth_pass.h"
+#include "shadow/depth/light_maps.h"
 #include "shadow/shared_params.h"
 
 enum { PARAM_TEMPLATE = SHADOW_PARAM_SLOPE + 1, PARAM_WEIGHTS, PARAM_UMBRA };

@@ -5,13 +5,13 @@
 
 #include "base/error.h"
 #include "gl/timer.h"
-#include "shadow/coverage_asks.h"
-#include "shadow/coverage_lists.h"
-#include "shadow/coverage_packed.h"
-#include "shadow/coverage_recovery.h"
-#include "shadow/geometry_maps.h"
+#include "shadow/geometry/coverage_asks.h"
+#include "shadow/geometry/coverage_lists.h"
+#include "shadow/geometry/coverage_packed.h"
+#include "shadow/geometry/coverage_recovery.h"
+#include "shadow/geometry/geometry_maps.h"
 #include "shadow/shared_params.h"
-#include "shadow/surrounded.h"
+#include "shadow/geometry/surrounded.h"
 
 enum { PARAM_NODES = SHADOW_PARAM_FIT + 1, PARAM_LAYOUT, PARAM_RECOVERY };
 enum { LAYOUT_EXACT, LAYOUT_PACKED };

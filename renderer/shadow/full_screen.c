@@ -6,7 +6,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "passes/gbuffer.h"
-#include "shadow/light_maps.h"
+#include "shadow/depth/light_maps.h"
 #include "shadow/shared_params.h"
 
 const char *const shadow_fit_choices[] = {"tight", "cube", NULL};

@@ -14,8 +14,8 @@
 #include "gl/context.h"
 #include "passes/gbuffer.h"
 #include "scene/pixel.h"
-#include "shadow/light_maps.h"
-#include "shadow/mask_facet.h"
+#include "shadow/depth/light_maps.h"
+#include "shadow/mask/mask_facet.h"
 #include "shadow/pixel_pass.h"
 #include "shadow/shared_params.h"
 

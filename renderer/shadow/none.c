@@ -1,5 +1,5 @@
 /* No shadows: every receiver is lit. What the others are measured against from below. */
-#include "shadow/depth_pass.h"
+#include "shadow/depth/depth_pass.h"
 #include "shadow/shared_params.h"
 
 static bool resolve(void *state, const struct shadow_input *in, struct error *err)

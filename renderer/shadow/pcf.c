@@ -1,6 +1,6 @@
 /* Percentage-closer filtering: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps". */
-#include "shadow/depth_pass.h"
-#include "shadow/light_maps.h"
+#include "shadow/depth/depth_pass.h"
+#include "shadow/depth/light_maps.h"
 #include "shadow/shared_params.h"
 
 static const struct param_desc params[] = {

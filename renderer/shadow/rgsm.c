@@ -2,7 +2,7 @@
  * its centre, and a point is tested against the plane of that triangle at its own position, so the test is continuous over a texel. */
 #include <math.h>
 
-#include "shadow/geometry_maps.h"
+#include "shadow/geometry/geometry_maps.h"
 #include "shadow/shared_params.h"
 
 static const struct param_desc params[] = {SHADOW_MAP_PARAMS};

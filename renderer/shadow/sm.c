@@ -1,6 +1,6 @@
 /* Shadow map: Williams 1978, "Casting curved shadows on curved surfaces". */
-#include "shadow/depth_pass.h"
-#include "shadow/light_maps.h"
+#include "shadow/depth/depth_pass.h"
+#include "shadow/depth/light_maps.h"
 #include "shadow/shared_params.h"
 
 static const struct param_desc params[] = {SHADOW_MAP_PARAMS, SHADOW_BIAS_PARAMS(0.00075, 0.5)};

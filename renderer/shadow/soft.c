@@ -7,10 +7,10 @@
 
 #include "blocks.h"
 #include "gl/context.h"
-#include "shadow/light_maps.h"
-#include "shadow/map_ranges.h"
+#include "shadow/depth/light_maps.h"
+#include "shadow/depth/map_ranges.h"
 #include "shadow/shared_params.h"
-#include "shadow/soft_pass.h"
+#include "shadow/depth/soft_pass.h"
 #include "trace/tracer.h"
 
 enum { PARAM_NEAR = SHADOW_PARAM_SLOPE + 1, PARAM_FAR, PARAM_LIFT };

@@ -1,10 +1,10 @@
 /* Sub-pixel shadow map (Lecocq, Marvie, Sourimant and Gautron 2014): conservative rasterization, one triangle a texel. A point nearer than all of
  * the texel is lit; one that the texel's triangle holds and lies behind it is shadowed; anything else is uncertain and asks the
  * triangles of the eight texels around. */
-#include "shadow/coverage_asks.h"
-#include "shadow/geometry_maps.h"
+#include "shadow/geometry/coverage_asks.h"
+#include "shadow/geometry/geometry_maps.h"
 #include "shadow/shared_params.h"
-#include "shadow/surrounded.h"
+#include "shadow/geometry/surrounded.h"
 
 static const struct param_desc params[] = {SHADOW_MAP_PARAMS};
 

@@ -1,4 +1,4 @@
-/* Conservative rasterization (shadow/conservative.h) against an exhaustive exact overlap test: no touched texel is ever missed. */
+/* Conservative rasterization (shadow/geometry/conservative.h) against an exhaustive exact overlap test: no touched texel is ever missed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +8,8 @@
 
 #include <cmocka.h>
 
-#include "shadow/conservative.h"
+#include "base/lanes.h"
+#include "shadow/geometry/conservative.h"
 
 #define SIDE 32
 
@@ -84,9 +85,9 @@ static void check(const float x[3], const float y[3], bool forgets_margin, struc
     for (int k = 0; any && forgets_margin && k < 3; k++)
         c.reach[k] = 0; /* as plain rasterization does: centres only */
     for (int v = 0; v < SIDE; v++)
-        for (int u = 0; u < SIDE; u += CONSERVATIVE_LANES) {
+        for (int u = 0; u < SIDE; u += LANES) {
             unsigned bits = any ? conservative_row(&c, u, v) : 0;
-            for (int i = 0; i < CONSERVATIVE_LANES; i++) {
+            for (int i = 0; i < LANES; i++) {
                 bool truth = truly_touches(x, y, u + i, v), marked = bits >> i & 1;
                 t->touched += truth;
                 t->missed += truth && !marked;

@@ -1,4 +1,4 @@
-/* Conservative geometry maps (shadow/geometry_map.h) and the lists made from them (shadow/coverage_lists.h), against brute force. */
+/* Conservative geometry maps (shadow/geometry/geometry_map.h) and the lists made from them (shadow/geometry/coverage_lists.h), against brute force. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,13 +11,13 @@
 #include "base/error.h"
 #include "base/job_pool.h"
 #include "made_scene.h"
-#include "shadow/coverage_asks.h"
-#include "shadow/coverage_lists.h"
-#include "shadow/coverage_packed.h"
-#include "shadow/coverage_recovery.h"
+#include "shadow/geometry/coverage_asks.h"
+#include "shadow/geometry/coverage_lists.h"
+#include "shadow/geometry/coverage_packed.h"
+#include "shadow/geometry/coverage_recovery.h"
 #include "shadow/fit.h"
-#include "shadow/geometry_kernel.h"
-#include "shadow/geometry_maps.h"
+#include "shadow/geometry/geometry_kernel.h"
+#include "shadow/geometry/geometry_maps.h"
 
 #define SIZE 96
 

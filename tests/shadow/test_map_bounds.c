@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "base/job_pool.h"
-#include "shadow/depth_pass.h"
-#include "shadow/map_bounds.h"
+#include "shadow/depth/depth_pass.h"
+#include "shadow/depth/map_bounds.h"
 
 enum { MAPS = 2 };
 static const double margin = 1e-6;

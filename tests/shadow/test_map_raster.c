@@ -14,8 +14,8 @@
 #include "base/job_pool.h"
 #include "made_scene.h"
 #include "scene/view.h"
-#include "shadow/depth_pass.h"
-#include "shadow/map_raster.h"
+#include "shadow/depth/depth_pass.h"
+#include "shadow/depth/map_raster.h"
 
 enum { SIDE = 101, TEXELS = SIDE * SIDE };
 

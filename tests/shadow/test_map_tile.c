@@ -1,4 +1,4 @@
-/* The kernels that rasterize a geometry map's tiles (shadow/map_tile.h): the same bits whatever the instruction set, and every touched texel marked. */
+/* The kernels that rasterize a geometry map's tiles (shadow/geometry/map_tile.h): the same bits whatever the instruction set, and every touched texel marked. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,10 +10,11 @@
 
 #include "base/error.h"
 #include "base/job_pool.h"
+#include "base/lanes.h"
 #include "made_scene.h"
-#include "shadow/conservative.h"
+#include "shadow/geometry/conservative.h"
 #include "shadow/fit.h"
-#include "shadow/map_tile.h"
+#include "shadow/geometry/map_tile.h"
 
 #define SIZE 192
 
@@ -135,7 +136,7 @@ static void touch_tile(const struct light_triangle *t, uint32_t tile_x, uint32_t
     }
     if (conservative_setup(&over, x, y, MAP_TILE, MAP_TILE))
         for (int32_t row = 0; row < (int32_t)MAP_TILE; row++)
-            for (int32_t column = 0; column < (int32_t)MAP_TILE; column += CONSERVATIVE_LANES)
+            for (int32_t column = 0; column < (int32_t)MAP_TILE; column += LANES)
                 rows[row] |= conservative_row(&over, column, row) << column;
 }
 

@@ -13,10 +13,10 @@
 #include "base/job_pool.h"
 #include "made_scene.h"
 #include "scene/view.h"
-#include "shadow/conservative.h"
+#include "shadow/geometry/conservative.h"
 #include "shadow/fit.h"
-#include "shadow/mask_contour.h"
-#include "shadow/mask_table.h"
+#include "shadow/mask/mask_contour.h"
+#include "shadow/mask/mask_table.h"
 
 static struct mask_table table;
 

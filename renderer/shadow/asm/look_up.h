@@ -1,5 +1,5 @@
 /* Look-ups in the trees on the CPU, eight pixels at a time: what shaders/asm.frag and shaders/asm_analysis.comp do where the GL device is a CPU as
- * well (shadow/depth_pass.h says why). The arithmetic is the shaders', but for roundings; the loops are compiled once an instruction set
+ * well (shadow/depth/depth_pass.h says why). The arithmetic is the shaders', but for roundings; the loops are compiled once an instruction set
  * (look_up_plain.c, look_up_avx2.c), to the same bits. */
 #pragma once
 
@@ -8,7 +8,7 @@
 
 #include "blocks.h"
 #include "shadow/asm/analysis.h"
-#include "shadow/depth_pass.h"
+#include "shadow/depth/depth_pass.h"
 
 struct asm_pages;
 struct job_pool;

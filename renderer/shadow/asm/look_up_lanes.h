@@ -3,7 +3,7 @@
 #pragma once
 
 #include "shadow/asm/look_up.h"
-#include "shadow/depth_receivers.h"
+#include "shadow/depth/depth_receivers.h"
 
 enum { FINEST = 2 * ASM_LEVELS, CELLS = ASM_CELLS * ASM_CELLS, TEXELS = ASM_PAGE * ASM_PAGE };
 _Static_assert(ASM_CELLS == 4 && ASM_PAGE == 16, "shifts by 2 and 4");

@@ -8,7 +8,7 @@
 #include "blocks.h"
 #include "draw/draw_scene.h"
 #include "gl/context.h"
-#include "shadow/light_maps.h"
+#include "shadow/depth/light_maps.h"
 #include "trace/tracer.h"
 
 #define TEXELS (ASM_PAGE * ASM_PAGE)

@@ -1,0 +1,6 @@
+#include "shadow/depth/bound_lanes.h"
+#include "shadow/depth/depth_filters.h"
+#include "shadow/depth/map_raster_lanes.h"
+#include "shadow/depth/soft_lanes.h"
+
+const struct depth_kernel depth_plain = {filter_rows, soft_term_rows, soft_blur_rows, raster_band, bound_band, bound_widen_band};

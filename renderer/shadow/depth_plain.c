@@ -1,6 +1,0 @@
-#include "shadow/bound_lanes.h"
-#include "shadow/depth_filters.h"
-#include "shadow/map_raster_lanes.h"
-#include "shadow/soft_lanes.h"
-
-const struct depth_kernel depth_plain = {filter_rows, soft_term_rows, soft_blur_rows, raster_band, bound_band, bound_widen_band};

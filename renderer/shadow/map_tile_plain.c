@@ -1,3 +1,0 @@
-#include "shadow/map_tile_code.h"
-
-map_tile_kernel *const map_tile_plain = rasterize;
